@@ -40,8 +40,8 @@ sources = $$(find solver network runner tests -name '*.[ch]pp')
 .PHONY: help configure build demo report studies variants ablation pictures test test-long test-cluster test-arm bench sanitize fuzz schema pages docs format format-check tidy install uninstall clean
 
 help:
-	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
-	@echo 'make report        results/report.html: what the demo found, and the studies that were run, as a page to read'
+	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), write results/report.html'
+	@echo 'make report        results/report.html again: what the demo found, and the studies that were run, as a page to read'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (two hours; continued if it was stopped)'
 	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
 	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (an hour and a half; likewise)'
@@ -72,23 +72,25 @@ configure:
 build: configure
 	@cmake --build $(BUILD) -j $(CORES) --target rodsweep
 
-# One worker per core; the master sleeps, so it shares a core. Exit code 3: some tasks failed, the rest has figures.
+# The page of the demo and of the studies that exist; prints its path. Data sets have nothing to compare.
+write_report = files=; for study in demo $(filter-out %_data,$(studies)) pictures; do \
+  [ ! -e results/$$study.h5 ] || files+=" results/$$study.h5"; done; \
+  $(PYTHON) analysis/report.py $$files --skip --title 'What the sweeps found' -o results/report.html --force
+
+# One worker per core; the master sleeps, so it shares a core. Exit code 3: some tasks failed, the report is of the rest.
 demo: build
 	@mkdir -p results; resume=; [ ! -e results/demo.h5 ] || resume=--resume; \
 	code=0; cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/demo.json -o results/demo.h5 $$resume </dev/null || code=$$?; \
 	[ $$code = 0 ] || [ $$code = 3 ] || { echo "The demo stopped early; 'make demo' continues it."; exit $$code; }; \
-	$(PYTHON) analysis/spatial.py results/demo.h5; \
-	$(PYTHON) analysis/summary.py results/demo.h5; \
-	exit $$code
+	$(write_report); exit $$code
 
-# Of the demo, which runs first if necessary, and of the studies that exist. Data sets have nothing to compare.
+ifeq ($(wildcard results/demo.h5),)
+report: demo
+else
 report:
-	@[ -e results/demo.h5 ] || $(MAKE) demo || [ -e results/demo.h5 ]
 	@$(call packages,build)
-	@files=; for study in demo $(filter-out %_data,$(studies)) pictures; do \
-	  [ ! -e results/$$study.h5 ] || files+=" results/$$study.h5"; \
-	done; \
-	$(PYTHON) analysis/report.py $$files --skip --title 'What the sweeps found' -o results/report.html --force
+	@$(write_report)
+endif
 
 # Draws everything in analysis/results except its README.
 studies: build

@@ -27,7 +27,8 @@ EXAMPLES = """examples:
   rodsweep query results/demo.h5 --csv >tasks.csv
   rodsweep query results/demo.h5 'cg_ratio.previous@1e-4>1' --json | jq '.[].task'
 
-exit codes: 0 the file was read, even if no task was found; 2 an error in the command line or the file"""
+exit codes: 0 the file was read, even if no task was found; 2 an error in the command line or the file, also a condition
+on a parameter whose values never meet it"""
 
 
 def arguments():
@@ -59,7 +60,7 @@ def main():
         order = table[options.sort]
         tasks = np.arange(file.task_count)
         for test in tests:
-            tasks = tasks[test.met(table.values(table[test.column]))[tasks]]
+            tasks = tasks[table.met(test)[tasks]]
         found = len(tasks)
         tasks = tasks[ordered(table.values(order)[tasks], options.descending)][:options.limit]
         rows = zip(*(cells(column, table.values(column)[tasks]) for column in shown))

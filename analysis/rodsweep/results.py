@@ -8,10 +8,11 @@ variable of a dataset ("units", "long_name").
 
 import numpy as np
 
-from rodsweep.reading import blocks, conditions, groups, measures, tidy
+from rodsweep.reading import blocks, groups, measures, tidy
 from rodsweep.reading.errors import SweepFileError, UserError, library, not_found
 from rodsweep.reading.hdf5 import as_text
 from rodsweep.reading.sweepfile import SweepFile
+from rodsweep.reading.tidy import Column
 
 ROWS = 100_000
 TOLERANCE = "cg_tolerance"    # name of the axis; xarray's sel() has a parameter `tolerance`
@@ -112,15 +113,21 @@ class Results:
         the steps. `by`: a parameter whose values split the numbers. `newton`: "first" or "all" iterations."""
         if newton not in measures.NEWTON:
             raise UserError(f"newton={newton!r}: choose one of {', '.join(measures.NEWTON)}")
-        sims = measures.simulations(self.file, self.file.select(_listed(where)))
+        table = self._table("tasks")
+        tasks, guesses, tolerances, left = table.narrowed([table.condition(text) for text in _listed(where)])
+        if left:
+            raise UserError(f"{left[0].text}: {left[0].column} has a value for every guess or tolerance; cg_ratio.GUESS "
+                            "and other columns of `rodsweep query` choose simulations")
+        sims = measures.simulations(self.file, np.isin(np.arange(self.file.task_count), tasks))
         if by is not None and len(sims):
             sims = sims.subset(groups.applicable(self.file, sims, by, without=True))
-        guesses, tolerances = list(range(len(self.file.guesses))), range(len(self.file.tolerances))
         own, records = [] if by is None else [by], []
         for block in blocks.blocks(self.file, sims, by, newton):
             settings = {name: block.settings[name] for name in own}
             records += [settings | record for record in blocks.records(self.file, block, guesses, tolerances, newton)]
-        frame = library("pandas").DataFrame(records, columns=[*own, *blocks.COLUMNS]).replace("", np.nan)
+        frame = library("pandas").DataFrame(records, columns=[*own, *blocks.COLUMNS])
+        frame = frame.replace(dict.fromkeys(("guess", "tolerance", "unreached_solves"), ""), np.nan)
+        frame = frame.astype({"tolerance": float, "unreached_solves": "Int64"})
         if by is not None and self.file.parameter(by).numeric:
             frame[by] = library("pandas").to_numeric(frame[by])
         frame.attrs["missing"] = self.missing
@@ -141,10 +148,7 @@ class Results:
 
     def _frame(self, level, columns, where):
         table, names, tests = self._asked(level, columns, where)
-        frame = self._part(table, names, list(table.blocks(names, tests)))
-        for name, values in frame.select_dtypes("category").items():    # else groupby() has groups without rows
-            frame[name] = values.cat.remove_unused_categories()
-        return frame
+        return self._part(table, names, list(table.blocks(names, tests)))
 
     def _parts(self, table, names, tests, rows):
         gathered, count = [], 0
@@ -191,21 +195,23 @@ class Results:
 
 
 def _column(table, name, columns):
-    """Values of a frame's column; texts that rows share become a categorical."""
-    shared = table.shared(name)
-    if shared is None:
-        values = np.concatenate([column.array() for column in columns] or [np.empty(0, dtype=table.dtype(name))])
-        return _counts(values) if values.dtype.kind == "i" and name not in tidy.COUNTED else _measured(values, name)
-    index = np.concatenate([column.index for column in columns] or [np.empty(0, dtype=np.int64)])
-    if shared.dtype.kind == "i" and (shared == -1).any():
-        return _counts(shared)[index]
-    if shared.dtype.kind in "iuf":
-        return shared[index]
-    categories, codes = np.unique(shared, return_inverse=True)
-    codes[conditions.absent(shared)] = -1
-    if len(categories) and categories[0] == "":
-        categories, codes = categories[1:], np.maximum(codes - 1, -1)
-    return library("pandas").Categorical.from_codes(codes[index], categories)
+    """Values of a frame's column."""
+    dtype, shared = table.dtype(name), table.shared(name)
+    parts = _texts(columns) if dtype.kind == "U" else [column.array() for column in columns]
+    values = np.concatenate(parts or [np.empty(0, dtype=dtype)])
+    if dtype.kind == "i" and (name not in tidy.COUNTED if shared is None else (shared == -1).any()):
+        return _counts(values)
+    return values
+
+
+def _texts(columns):
+    """The rows of columns of texts, as objects; missing texts are NaN. Equal texts share an object, so that a row takes
+    8 bytes. They are not categories: groupby() has groups without rows of those, unless it is told otherwise."""
+    made = {}
+    for values in {id(column.values): column.values for column in columns}.values():    # blocks share them
+        texts, codes = np.unique(values, return_inverse=True)
+        made[id(values)] = np.where(texts == "", np.nan, texts.astype(object))[codes]
+    return [Column(made[id(column.values)], column.index).array() for column in columns]
 
 
 def _counts(values):

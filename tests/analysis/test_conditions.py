@@ -1,4 +1,4 @@
-"""--select, export.py --where and rodsweep.open() read conditions on tasks and rows as in tests/conditions.json."""
+"""rodsweep query, --select, export.py --where and rodsweep.open() read the conditions of tests/conditions.json alike."""
 
 import json
 import os
@@ -8,6 +8,7 @@ import synthetic
 import numpy as np
 from rodsweep.reading import conditions, tidy
 from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.task_columns import TaskColumns
 from running import Folder
 
 with open(os.path.join(synthetic.ANALYSIS, "..", "tests", "conditions.json"), encoding="utf-8") as text:
@@ -33,11 +34,7 @@ class Conditions(Folder):
     def test_tasks_are_selected_as_the_table_says(self):
         for text, tasks in CASES["met"].items():
             with self.subTest(text):
-                if tasks:
-                    self.assertEqual(np.flatnonzero(self.file.select([text])).tolist(), tasks)
-                else:
-                    with self.assertRaisesRegex(KeyNotFound, "no task meets"):
-                        self.file.select([text])
+                self.assertEqual(np.flatnonzero(TaskColumns(self.file).select([text])).tolist(), tasks)
 
     def test_rows_are_selected_as_the_table_says(self):
         for text, tasks in CASES["met"].items():
@@ -47,10 +44,28 @@ class Conditions(Folder):
 
     def test_what_cannot_be_asked_is_refused_with_the_words_of_the_table(self):
         for text, words in CASES["refused"].items():
-            for reader in (lambda: self.file.select([text]), lambda: self.table.condition(text)):
+            for reader in (TaskColumns(self.file), self.table):
                 with self.subTest(text), self.assertRaises(KeyNotFound) as refused:
-                    reader()
+                    reader.condition(text)
                 self.assertIn(words, str(refused.exception))
+
+    def test_every_column_of_the_tasks_chooses_rows_too(self):
+        table = TaskColumns(self.file)
+        for text in ("state=done", "segments=10", "sample=1", "iterations_sum.previous@1e-3>0"):
+            tasks = np.flatnonzero(table.select([text])).tolist()
+            for level in ("tasks", "solves", "steps"):
+                with self.subTest(text, level=level):
+                    rows = tidy.Tidy(self.file, level, np.arange(6), range(4), range(8))
+                    blocks = rows.blocks(["task"], [rows.condition(text)])
+                    self.assertEqual(sorted({task for block in blocks for task in block["task"].array()}), tasks)
+
+    def test_a_result_that_no_task_has_is_an_answer(self):
+        for text in ("outcome=diverged", "state=pending", "iterations_sum.previous<0"):
+            table = TaskColumns(self.file)
+            self.assertFalse(table.met(table.condition(text)).any())
+            self.assertEqual(list(self.table.blocks(["task"], [self.table.condition(text)])), [])
+            with self.assertRaisesRegex(KeyNotFound, f"no task meets {text}"):
+                table.select([text])
 
     def test_a_word_that_a_column_never_holds_is_refused_with_the_nearest(self):
         columns = {"guess": conditions.Column(False, ("zero", "a, b", "quadratic"))}
@@ -65,7 +80,7 @@ class Conditions(Folder):
         file = self.changed(plant)
         for text, count in (("scene.gravity_m_s2.y<0", 5), ("scene.gravity_m_s2.y=-9.81", 5),
                             ("scene.gravity_m_s2=(0, -9.81, 0)", 5), ("scene.gravity_m_s2=(0, 0, 0)", 1)):
-            self.assertEqual(file.select([text]).sum(), count, text)
+            self.assertEqual(TaskColumns(file).select([text]).sum(), count, text)
 
 
 if __name__ == "__main__":

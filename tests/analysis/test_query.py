@@ -64,6 +64,14 @@ class Query(Scripts):
         self.assertRegex(said, r"scene\.youngs_modulus_pa .*\[Pa\]\n")
         self.assertRegex(said, r"(?s)cg_ratio\.GUESS\[@TOLERANCE\].*zero, previous, quadratic.* 1e-2\n")
 
+    def test_data_of_a_user_are_named_on_a_line_of_standard_error(self):
+        self.plant()
+        with synthetic.h5py.File(self.path, "r+") as h5:
+            h5["tasks/mine"] = np.arange(9)
+        said = self.query("--csv")
+        self.assertEqual(said.stderr, "query.py: sweep.h5: ignored /tasks/mine: not a row per task, solve or step\n")
+        self.assertNotIn("mine", said.stdout)
+
     def test_mistakes_are_one_line_and_exit_code_2(self):
         self.plant()
         for words, *arguments in (("did you mean scene.segments?", "scene.segmant=3"),

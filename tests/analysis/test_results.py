@@ -5,13 +5,14 @@ import subprocess
 import sys
 import unittest
 import unittest.mock
+import warnings
 
 import synthetic
 import numpy as np
 import pandas
 import rodsweep
 from rodsweep.reading import tidy
-from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.errors import IgnoredData, KeyNotFound
 from running import Folder
 
 PLANT = synthetic.Plant()
@@ -42,7 +43,6 @@ class Frames(Opened):
         self.assertEqual(one[["iterations_sum", "scene.segments", "scene.type", "sample"]].values.tolist(),
                          [[2 * 404, 40, "bending_rod", 0]])
         self.assertNotIn("solve.norm", tasks)    # the same for every task
-        self.assertEqual(tasks.guess.cat.categories.tolist(), sorted(results.guesses))
 
     def test_what_was_not_reached_is_nan_and_what_has_no_meaning_too(self):
         solves = self.open(failed={}, pending=()).solves(where="scene.type=helix")
@@ -63,10 +63,12 @@ class Frames(Opened):
         self.assertTrue(solves["iterations_1e-4"].isna().any())
         self.assertEqual(solves["iterations_1e-4"].min(), 20)
         self.assertEqual(results.dataset("solves").iterations.dtype.kind, "f")
+        self.assertEqual(str(results.summary().unreached_solves.dtype), "Int64")
 
     def test_a_tolerance_that_was_not_counted_is_refused(self):
-        with self.assertRaisesRegex(KeyNotFound, '"tolerance=0.02": iterations were counted at the tolerances 1e-1, 1e-2'):
-            self.open().tasks(where="tolerance=0.02")
+        for reader in (self.open().tasks, self.open().summary):
+            with self.assertRaisesRegex(KeyNotFound, "no tolerance meets tolerance=0.02; known: 1e-08, .* 0.01, 0.1"):
+                reader(where="tolerance=0.02")
 
     def test_data_of_a_user_in_our_groups_are_no_columns(self):
         with self.open() as before:
@@ -74,7 +76,10 @@ class Frames(Opened):
         with synthetic.h5py.File(self.path, "r+") as h5:
             h5["tasks/mine"], h5["tasks/parameters/mine"] = np.arange(3), 1.5
             h5["steps/mine"], h5["solves/notes"] = np.zeros((2, 2)), "mine"
-        after = rodsweep.open(self.path)
+            h5["timing/solves/mine"] = np.zeros(3)
+        with self.assertWarnsRegex(IgnoredData, "ignored /tasks/mine, /tasks/parameters/mine, /solves/notes, "
+                                                "/timing/solves/mine, /steps/mine: not a row per task, solve or step$"):
+            after = rodsweep.open(self.path)
         self.assertEqual([list(getattr(after, level)().columns) for level in ("tasks", "solves", "steps")], columns)
 
     def test_units_meanings_and_what_is_missing_stay(self):
@@ -96,19 +101,28 @@ class Frames(Opened):
         self.assertEqual(list(solves), ["guess", "step", "iterations_1e-2"])
         self.assertEqual(len(solves), 15 * 2 * 2)
         self.assertEqual(results.steps("task", "task<2").task.tolist(), [0, 0, 1, 1])
-        self.assertEqual(len(results.tasks(where="task=99")), 0)
-        self.assertEqual(list(results.tasks(where="task=99")), list(results.tasks()))
+        self.assertEqual(len(results.tasks(where="outcome=torn")), 0)
+        self.assertEqual(list(results.tasks(where="outcome=torn")), list(results.tasks()))
 
-    def test_categories_are_what_the_rows_have_so_that_groups_are_too(self):
-        results = self.open()
-        tasks = results.tasks(where=["tolerance=1e-2", "guess!=zero", "scene.type=helix"])
-        means = tasks.groupby(["scene.segments", "guess"]).iterations_sum.mean().unstack()
+    def test_groups_of_several_columns_are_the_combinations_that_exist(self):
+        results = self.open(failed={3: "diverged", 12: "diverged"})    # of both scenes, with few segments
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            groups = results.tasks().groupby(["scene.type", "outcome", "scene.segments"]).size()
+            means = results.tasks(where=["tolerance=1e-2", "guess!=zero", "scene.type=helix"]) \
+                .groupby(["scene.segments", "guess"]).iterations_sum.mean().unstack()
+            summary = results.summary().groupby(["scene", "settings", "guess"]).size()
+        self.assertEqual(len(groups), 2 * 3 + 2)
+        self.assertGreater(groups.min(), 0)
         self.assertEqual(list(means), ["oracle(0.1)", "previous", "quadratic"])
         self.assertTrue(means.notna().all(axis=None))
-        self.assertEqual(tasks["scene.type"].cat.categories.tolist(), ["helix"])
-        self.assertEqual(tasks.attrs["missing"], results.missing)
-        for block in results.blocks("solves", where="guess!=zero", rows=50):
-            self.assertEqual(set(block.guess.cat.categories), set(results.guesses))
+        self.assertEqual(len(summary), 2 * 5)    # guesses, and the direct solve
+
+    def test_missing_texts_are_nan_and_equal_ones_share_their_memory(self):
+        message = self.open().tasks().message
+        self.assertEqual(set(message.dropna()), {"planted"})
+        self.assertEqual(message.notna().sum(), 4 * 8)
+        self.assertEqual(len({id(text) for text in message.dropna()}), 1)
 
     def test_blocks_are_the_frame_in_parts_of_bounded_size(self):
         results = self.open()
@@ -143,6 +157,18 @@ class Frames(Opened):
         self.assertAlmostEqual(row.value, 0.25, delta=0.003)
         self.assertLessEqual(row.low, row.value)
         self.assertEqual(row.simulations, 6)
+
+    def test_conditions_choose_guesses_and_tolerances_of_the_summary(self):
+        summary = self.open(samples=6).summary(where=["tolerance=1e-2", "guess=quadratic", "scene.segments=20"])
+        ratios = summary[summary.quantity == "cg_ratio"]
+        self.assertEqual(ratios[["scene", "guess", "tolerance", "simulations"]].values.tolist(),
+                         [["bending_rod", "quadratic", 0.01, 6], ["helix", "quadratic", 0.01, 6]])
+        self.assertEqual(len(self.open().summary(where=["guess!=zero", "guess=zero"])), 0)
+
+    def test_a_closed_loop_names_the_guess_that_advances_the_rods(self):
+        results = self.open(scenes=("helix",), closed_loop=True, failed={}, pending=())
+        tasks = results.tasks(where="own_guess=quadratic")
+        self.assertEqual({*tasks.guess, *tasks.own_guess}, {"quadratic"})
 
 
 class Datasets(Opened):
@@ -189,6 +215,7 @@ class Refusals(Opened):
         self.refused("did you mean scene.segments?", lambda: results.steps(where="scene.segmnts=20"))
         self.refused("did you mean iterations?", lambda: results.dataset("solves", ["iterationss"]))
         self.refused("has a value for every guess", lambda: results.dataset("solves", where="cg_s>1"))
+        self.refused("has a value for every guess", lambda: results.summary(where="iterations_sum>1"))
         self.refused("choose one of tasks, solves, steps", lambda: results.blocks("task"))
         self.refused("choose one of first, all", lambda: results.summary(newton="last"))
         self.refused("has no rows of solves", self.open(solves=False).solves)

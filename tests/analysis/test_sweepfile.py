@@ -9,6 +9,7 @@ import numpy as np
 from rodsweep.reading import errors
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
+from rodsweep.reading.task_columns import TaskColumns
 from running import Folder
 
 
@@ -125,8 +126,8 @@ class Parameters(Folder):
         segments = file.parameter("scene.segments").values
         for condition, wanted in (("scene.segments=10,40", segments != 20), ("scene.segments=15:", segments > 15),
                                   ("scene.type=helix", file.scene_types() == "helix")):
-            np.testing.assert_array_equal(file.select([condition]), wanted, condition)
-        both = file.select(["scene.type=helix", "scene.segments=20"])
+            np.testing.assert_array_equal(TaskColumns(file).select([condition]), wanted, condition)
+        both = TaskColumns(file).select(["scene.type=helix", "scene.segments=20"])
         self.assertEqual(both.sum(), 1)
 
     def test_selections_that_cannot_be_met(self):
@@ -135,7 +136,7 @@ class Parameters(Folder):
                                   (["scene.segments=11"], "known: 10, 20, 40"), (["scene.typ=helix"], "scene.type"),
                                   (["scene.segments=10", "scene.segments=20"], "no task meets all")):
             with self.assertRaisesRegex(KeyNotFound, words):
-                file.select(conditions)
+                TaskColumns(file).select(conditions)
 
 
 class Rows(Folder):

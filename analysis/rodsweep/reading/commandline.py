@@ -4,12 +4,15 @@ import argparse
 import os
 import re
 import sys
+import warnings
 
 import numpy as np
 
 from rodsweep.reading import conditions, measures, texts
-from rodsweep.reading.errors import KeyNotFound, UserError, not_found
+from rodsweep.reading.errors import IgnoredData, KeyNotFound, UserError, not_found
+from rodsweep.reading.task_columns import TaskColumns
 
+USUAL_WARNING = warnings.formatwarning
 DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
 
@@ -21,7 +24,8 @@ def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=Tr
     made.add_argument(**of_files, help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
     made.add_argument("--scene", metavar="TYPE", help="only this type of scene, e.g. bending_rod")
     made.add_argument("--select", metavar="CONDITION", action="append", default=[],
-                      help=f"only tasks that meet the condition: a parameter, {conditions.FORM}; may be repeated")
+                      help=f"only tasks that meet the condition: a column of `rodsweep query`, {conditions.FORM}; may be "
+                           "repeated")
     made.add_argument("--guess", metavar="LABEL,…", help="only these guesses (default: all)")
     if tolerances:
         made.add_argument("--tolerance", metavar="T,…",
@@ -47,9 +51,17 @@ def whole_number(text):
     return value
 
 
+def _warning(message, category, *place):
+    """The text of a warning: those about a file do not name a line of code."""
+    if category is IgnoredData:
+        return f"{os.path.basename(sys.argv[0])}: {message}\n"
+    return USUAL_WARNING(message, category, *place)
+
+
 def run(main):
     """Calls main(). A UserError gives one line on stderr and exit code 2. So do other errors, since a damaged file can
     make any line fail; `python3 -X dev SCRIPT` shows where."""
+    warnings.formatwarning = _warning
     try:
         main()
         sys.stdout.flush()
@@ -77,7 +89,7 @@ def _stop(message):
 
 def chosen_tasks(file, arguments):
     """Mask of the tasks that --scene and --select choose, complete or not."""
-    mask = file.select(arguments.select)
+    mask = TaskColumns(file).select(arguments.select)
     if arguments.scene:
         scenes = file.scene_types()
         if arguments.scene not in scenes:

@@ -1,4 +1,4 @@
-"""A condition on a column for `rodsweep query`, export.py --where and --select: COLUMN OPERATOR VALUE.
+"""A condition for `rodsweep query`, --select, export.py --where and where= in Python: COLUMN OPERATOR VALUE.
 
   =  (or ==)   equal to one of the values, which commas (outside of parentheses) separate; of numbers, a value may be a
                range LOW:HIGH, LOW: or :HIGH, ends included
@@ -7,9 +7,9 @@
   ~            texts that contain the value
 
 All operators treat numbers as equal up to a relative 1e-9. A missing value (NaN, an empty text, -1 of integers) meets
-no condition. runner/command/query_condition.hpp reads the same language; tests/conditions.json has cases for both.
-Raises KeyNotFound for an unknown column or word, with the nearest known one. Raises it also for a number or an operator
-that does not fit the column.
+no condition. Every column of the tasks (task_columns.py) is known everywhere; frames and export.py add those of their
+rows. tests/conditions.json has cases. Raises KeyNotFound for an unknown column or word, with the nearest known one. Raises
+it also for a number or an operator that does not fit the column.
 """
 
 import re
@@ -18,11 +18,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from rodsweep.reading import texts
-from rodsweep.reading.errors import KeyNotFound, not_found
+from rodsweep.reading.errors import LISTED, KeyNotFound, listed, not_found
 
 OPERATORS = ("<=", ">=", "!=", "==", "=", "<", ">", "~")   # the longer ones first
 FORM = "one of = != < <= > >= ~ (contains), and a value; for = also A,B or LOW:HIGH"   # in help texts, after the column
 ROUNDING = 1e-9
+# What to use where rows do not have these columns: the nearest names mean something else.
+OF_ROWS = {"tolerance": "these rows have no tolerance; columns have it in their name (iterations_1e-2, "
+                        "cg_ratio.GUESS@1e-2), scripts have --tolerance; solve.tolerance is that of the timed solves",
+           "guess": "these rows have no guess; columns have it in their name (cg_ratio.GUESS), scripts have --guess; "
+                    "own_guess advances the rods in a closed loop"}
 NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity)", re.IGNORECASE)
 
 
@@ -77,7 +82,7 @@ def parse(text, columns, all_by=""):
     if not value:
         raise _no_condition(text)
     if name not in columns:
-        raise not_found("column", name, columns, all_by)
+        raise KeyNotFound(f'"{text}": {OF_ROWS[name]}') if name in OF_ROWS else not_found("column", name, columns, all_by)
     column, equality = columns[name], operator in ("=", "!=")
     if column.numeric:
         if operator == "~":
@@ -93,6 +98,17 @@ def parse(text, columns, all_by=""):
         if item not in column.words:
             raise not_found(f'"{text}":', item, column.words)
     return Condition(text, name, operator, texts=(*_listed(value), value))   # the last: a value with a comma
+
+
+def require_met(condition, values, what):
+    """Raises KeyNotFound, with the values that there are, if none meets a condition."""
+    if condition.met(values).any():
+        return
+    there = np.unique(values[~absent(values)])
+    numeric = there.dtype.kind in "iuf"
+    known = f"{there[0]:g} to {there[-1]:g}" if numeric and len(there) > LISTED else \
+        listed([f"{value:g}" if numeric else value for value in there])
+    raise KeyNotFound(f"no {what} meets {condition.text}; known: {known}")
 
 
 def _parts(text, columns):

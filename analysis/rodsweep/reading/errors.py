@@ -18,6 +18,10 @@ class SweepFileError(UserError):
     """A file that cannot be read as a rodsweep results file."""
 
 
+class IgnoredData(UserWarning):
+    """Datasets in a results file that are not columns, such as a user's own."""
+
+
 class KeyNotFound(UserError):
     """A name or value that the user gave and that the file does not have."""
 

@@ -35,6 +35,10 @@ class Parameter:
         components = np.column_stack([codes(component) for component in self.values.T])  # in rows, NaN is unequal to NaN
         return np.unique(components, axis=0, return_inverse=True)[1].reshape(len(self.values))
 
+    def flat(self):
+        """A value for every task: of vectors a text, which is empty if the key does not apply."""
+        return self.values if self.values.ndim == 1 else np.where(self.applies(), self.texts(), "")
+
     def texts(self):
         return np.array([self.text(task) for task in range(len(self.values))], dtype=str)
 

@@ -9,19 +9,18 @@ guess or tolerance.
 
 import json
 import os
+import warnings
 
 import h5py
 import numpy as np
 
-from rodsweep.reading import conditions
-from rodsweep.reading.errors import KeyNotFound, SweepFileError, listed, not_found
+from rodsweep.reading.errors import IgnoredData, SweepFileError, listed, not_found
 from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, is_column, opened
 from rodsweep.reading.parameters import Parameter
 
 SCHEMA_VERSION = 2
 BLOCK_ROWS = 1 << 17
-ALL_BY = "rodsweep query FILE --columns help lists all"    # in the message for an unknown parameter
-OF_TASKS = {"task": True, "sample": True, "outcome": False}   # columns for select() beside parameters; if numeric
+ALL_BY = "rodsweep query FILE --columns help lists all"    # in the message for an unknown column of the tasks
 PLAN_COLUMNS = ("point", "sample", "own_guess", "first_step", "steps", "first_solve", "solves")
 
 
@@ -70,6 +69,9 @@ class SweepFile:
         self.tolerances = self.h5["/axes/tolerance"][:] if self.has("/axes/tolerance") else np.empty(0)
         self.zero = self.guesses.index("zero") if "zero" in self.guesses else None
         self.parameters = self._read_parameters()
+        ignored = self._ignored()
+        if ignored:
+            warnings.warn(f"{self.path}: ignored {listed(ignored)}: not a row per task, solve or step", IgnoredData)
 
     def _required(self, path):
         if path not in self.h5:
@@ -89,6 +91,19 @@ class SweepFile:
         if "/tasks/parameters" in self.h5:
             self.h5["/tasks/parameters"].visititems(add)
         return parameters
+
+    def _ignored(self):
+        """Paths in the groups of columns that are not columns: a user may keep other data there."""
+        found = []
+        for level, rows in (("tasks", self.task_count), ("solves", self.solves.sum()), ("steps", self.steps.sum())):
+            for group in (f"/{level}", f"/timing/{level}"):
+                def add(name, item, group=group, sizes=((rows,), (0,))):    # 0: not recorded
+                    if isinstance(item, h5py.Dataset) and item.shape[:1] not in sizes:
+                        found.append(f"{group}/{name}")
+
+                if group in self.h5:
+                    self.h5[group].visititems(add)
+        return found
 
     def has(self, path):
         """Whether a dataset exists and is not empty."""
@@ -127,45 +142,6 @@ class SweepFile:
         if not self.complete[tasks].all():
             raise ValueError(f"{path} was asked for tasks that are not complete")
         return decoded(self.h5[path][:])[tasks] if self.has(path) else None
-
-    def select(self, texts):
-        """Mask of the tasks that meet all conditions (see conditions.py) on task, sample, outcome and parameters;
-        vectors have .x, .y or .z after the name."""
-        known = self._selectable()
-        mask = np.ones(self.task_count, dtype=bool)
-        for text in texts:
-            condition = conditions.parse(text, known, ALL_BY)
-            chosen = condition.met(self._of_tasks(condition.column))
-            if not chosen.any():
-                raise self._none_meets(condition)
-            mask &= chosen
-        if not mask.any():
-            raise KeyNotFound("no task meets all of " + ", ".join(texts))
-        return mask
-
-    def _selectable(self):
-        known = {name: conditions.Column(numeric) for name, numeric in OF_TASKS.items()}
-        for name, parameter in self.parameters.items():
-            known[name] = conditions.Column(parameter.numeric)
-            if parameter.values.shape[1:] == (3,):
-                known.update({f"{name}.{letter}": conditions.Column(True) for letter in "xyz"})
-        return known
-
-    def _of_tasks(self, name):
-        if name in OF_TASKS:
-            return np.arange(self.task_count) if name == "task" else getattr(self, name)
-        if name in self.parameters:
-            parameter = self.parameters[name]
-            return parameter.texts() if parameter.values.ndim > 1 else parameter.values
-        name, _, letter = name.rpartition(".")
-        return self.parameters[name].values[:, "xyz".index(letter)]
-
-    def _none_meets(self, condition):
-        name = condition.column
-        if name not in self.parameters:
-            return KeyNotFound(f"no task meets {condition.text}")
-        known = sorted(set(self.parameters[name].texts()))
-        return KeyNotFound(f"no task meets {condition.text}; known: {listed(known)}")
 
     def runs(self):
         """One dictionary per start of the runner (rows of /runs that were used)."""

@@ -6,7 +6,8 @@
   cg_ratio.LABEL[@TOLERANCE], ...             /tasks, of one guess; default tolerance: that of `headline`
   elapsed_s, rank, host, run, ...             /timing/tasks
 
-A missing value (a key that does not apply, a result of a pending task, -1 of integers) is NaN or "".
+A missing value (a key that does not apply, a result of a pending task, -1 of integers) is NaN or "". Conditions on the
+tasks are conditions on these columns, in every command and in Python.
 """
 
 from dataclasses import dataclass, replace
@@ -16,8 +17,8 @@ import numpy as np
 from rodsweep.reading import conditions, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
 from rodsweep.reading.hdf5 import as_text, decoded, is_column
+from rodsweep.reading.sweepfile import ALL_BY
 
-ALL_BY = "--columns help"
 OUTCOMES = ("pending", "ok", "diverged", "not_a_number", "indefinite", "iteration_limit", "timed_out", "error", "torn",
             "crashed")
 PLANNED = ("point", "sample", "own_guess", "segments", "joints", "steps", "solves", "frames", "systems", "system_segments",
@@ -28,7 +29,7 @@ LEFT_OUT = ("state", "checksum")
 @dataclass(frozen=True)
 class TaskColumn:
     name: str
-    path: str = ""        # of the dataset; "" of computed columns
+    path: str = ""        # of the dataset, or the name of the parameter; "" of computed columns
     index: tuple = ()     # of the value within a row
     unit: str = ""
     meaning: str = ""
@@ -36,7 +37,7 @@ class TaskColumn:
     whole: bool = False
     swept: bool = False
     parameter: bool = False
-    result: bool = False    # missing until the task is done
+    result: bool = False    # not known before the task is done
     guess: str = ""
     by_tolerance: bool = False
 
@@ -50,11 +51,11 @@ class TaskColumns:
         self.closed_loop = bool((file.own_guess >= 0).any())
         self.columns = {}
         self._add(TaskColumn("task", meaning="number of the task: its row in /tasks", whole=True))
-        self._add(TaskColumn("state", meaning='"done" or "pending"', numeric=False))
-        for group in ("/tasks", "/tasks/parameters", "/timing/tasks"):
-            for name, item in sorted(file.h5[group].items()) if group in file.h5 else ():
-                if is_column(item, file.task_count) and (group, name) not in [("/tasks", one) for one in LEFT_OUT]:
-                    self._add_dataset(name, f"{group}/{name}", item)
+        self._add(TaskColumn("state", meaning='"done" or "pending"', numeric=False, result=True))
+        self._add_datasets("/tasks")
+        for _, parameter in sorted(file.parameters.items()):
+            self._add_parameter(parameter)
+        self._add_datasets("/timing/tasks")
         self.names = list(self.columns)
 
     def __getitem__(self, name):
@@ -73,7 +74,31 @@ class TaskColumns:
 
     def condition(self, text):
         """A condition on a column of this table."""
-        return conditions.parse(text, _Known(self), ALL_BY)
+        return self.checked(conditions.parse(text, self.known(), ALL_BY))
+
+    def known(self):
+        """The columns for conditions.parse()."""
+        return _Known(self)
+
+    def checked(self, condition):
+        """The condition. Raises KeyNotFound if none of the tasks can meet it, whatever their results are."""
+        column = self[condition.column]
+        if not column.result:
+            conditions.require_met(condition, self.values(column), "task")
+        return condition
+
+    def met(self, condition):
+        """Mask of the tasks that meet a condition."""
+        return condition.met(self.values(self[condition.column]))
+
+    def select(self, wanted):
+        """Mask of the tasks that meet all conditions, given as texts. Raises KeyNotFound if there is none."""
+        mask = np.ones(self.file.task_count, dtype=bool)
+        for text in wanted:
+            mask &= self.met(self.condition(text))
+        if not mask.any():
+            raise KeyNotFound(f"no task meets {'all of ' * (len(wanted) > 1)}{', '.join(wanted)}")
+        return mask
 
     def values(self, column):
         """An array with a value per task."""
@@ -83,7 +108,11 @@ class TaskColumns:
             return np.where(self.file.complete, "done", "pending")
         if column.path == "/tasks/outcome":
             return self.file.outcome
-        values = decoded(self.file.h5[column.path][(slice(None), *column.index)])
+        if column.parameter:
+            parameter = self.file.parameters[column.path]
+            values = parameter.values[(slice(None), *column.index)] if column.index else parameter.flat()
+        else:
+            values = decoded(self.file.h5[column.path][(slice(None), *column.index)])
         if column.path == "/tasks/own_guess":
             return np.array([self.file.guesses[k] if k >= 0 else "" for k in values], dtype=str)
         missing = conditions.absent(values)
@@ -109,26 +138,39 @@ class TaskColumns:
     def _add(self, column):
         self.columns[column.name] = column
 
+    def _add_datasets(self, group):
+        for name, item in sorted(self.file.h5[group].items()) if group in self.file.h5 else ():
+            if is_column(item, self.file.task_count) and (group != "/tasks" or name not in LEFT_OUT):
+                self._add_dataset(name, f"{group}/{name}", item)
+
+    def _add_parameter(self, parameter):
+        """A vector is a text, and a number per component."""
+        made = TaskColumn(parameter.name, parameter.name, (), without_one(parameter.unit), parameter.meaning,
+                          parameter.numeric, parameter.numeric and parameter.values.dtype.kind in "iu",
+                          parameter.swept, True)
+        self._add(made)
+        for k, letter in enumerate("xyz") if parameter.values.shape[1:] == (3,) else ():
+            self._add(replace(made, name=f"{made.name}.{letter}", index=(k,), numeric=True))
+
     def _add_dataset(self, name, path, item):
-        unit = as_text(item.attrs.get("unit", ""))
-        parameter = path.startswith("/tasks/parameters/")
-        planned = parameter or name in PLANNED or name.startswith("first_")
-        made = TaskColumn(name, path, (), "" if unit == "1" else unit, as_text(item.attrs.get("meaning", "")),
-                          item.dtype.kind in "iufb" and name != "own_guess", item.dtype.kind in "iu",
-                          bool(item.attrs.get("swept", False)), parameter, not planned)
-        if name == "own_guess" and not parameter:
-            made = replace(made, meaning="the guess that advances the rods; none: another method does", whole=False)
+        made = TaskColumn(name, path, (), without_one(as_text(item.attrs.get("unit", ""))),
+                          as_text(item.attrs.get("meaning", "")), item.dtype.kind in "iuf", item.dtype.kind in "iu",
+                          result=name not in PLANNED and not name.startswith("first_"))
+        if name == "own_guess":
+            made = replace(made, meaning="the guess that advances the rods; none: another method does", numeric=False,
+                           whole=False)
         guesses, shape = self.file.guesses, item.shape[1:]
         if not shape:
             self._add(made)
-        elif parameter and shape == (3,):
-            for k, letter in enumerate("xyz"):
-                self._add(replace(made, name=f"{name}.{letter}", index=(k,)))
         elif guesses and shape in ((len(guesses),), (len(guesses), len(self.file.tolerances))):
             by_tolerance = len(shape) == 2
             for k, label in enumerate(guesses):
                 self._add(replace(made, name=f"{name}.{label}", index=(k, self.headline) if by_tolerance else (k,),
                                   guess=label, by_tolerance=by_tolerance))
+
+
+def without_one(unit):
+    return "" if unit == "1" else unit
 
 
 class _Known:

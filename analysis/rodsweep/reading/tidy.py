@@ -7,6 +7,7 @@ and empty texts are missing values. Blocks have at most BLOCK_ROWS rows of the f
 """
 
 import itertools
+from collections import ChainMap
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy as np
 from rodsweep.reading import conditions, measures, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
 from rodsweep.reading.hdf5 import as_text, decoded, is_column
+from rodsweep.reading.task_columns import TaskColumns
 
 LEVELS = ("tasks", "solves", "steps")
 BLOCK_ROWS = 1 << 13
@@ -21,10 +23,11 @@ INTERNAL = ("first_step", "first_solve", "first_frame_row", "first_segment_row",
             "first_system_joint", "state", "checksum", "segments_total")
 COMPONENTS = ("x", "y", "z")
 OF_TASKS = ("task", "outcome", "sample", "own_guess", "point")    # loaded for every task
-OWN_MEANING = {"task": "number of the task: its row in /tasks", "guess": "label of the initial guess",
+OWN_MEANING = {"guess": "label of the initial guess",
                "tolerance": "residual that CG has to reach, relative to the right-hand side's"}
 COUNTED = ("step", "newton", "rod", "newton_iterations")    # integers that every reached row has
-ALL_BY = "export.py --list and results.columns() list all"    # in the message for an unknown name
+# In the message for an unknown name.
+ALL_BY = "export.py --list and results.columns() list all, `rodsweep query FILE --columns help` lists those of tasks"
 MARKS = ("newton", "newton_iterations", "time_s")    # the first one in the file tells which rows were reached
 
 
@@ -66,7 +69,7 @@ class Tidy:
         self.file, self.level, self.tasks = file, level, np.asarray(tasks)
         self.guesses, self.tolerances = list(guesses), list(tolerances)
         self.labels, self.guessing = np.array(file.guesses, dtype=str), measures.has_guesses(file)
-        self.datasets, self.whole = {}, {}
+        self.datasets, self.whole, self.of_tasks = {}, {}, TaskColumns(file)
         mark = mark_of(file, level)
         rows = file.task_count if level == "tasks" else len(file.h5[mark]) if mark else 0
         for folder in (f"/{level}", f"/timing/{level}"):
@@ -133,25 +136,30 @@ class Tidy:
             return "", OWN_MEANING[name]
         if not self._is_measured(name) and name in self.file.parameters:
             return self.file.parameters[name].unit, self.file.parameters[name].meaning
-        base, index = (name, None) if name in OF_TASKS else self._source(name)
-        attributes = self.file.h5[f"/tasks/{name}" if name in OF_TASKS else self.datasets[base]].attrs
+        if name in OF_TASKS:
+            return self.of_tasks[name].unit, self.of_tasks[name].meaning
+        base, index = self._source(name)
+        attributes = self.file.h5[self.datasets[base]].attrs
         unit, meaning = (as_text(attributes.get(key, "")) for key in ("unit", "meaning"))
         return unit, meaning if index is None else f"{meaning}; {name[len(base) + 1:]}".removeprefix("; ")
 
     def condition(self, text):
-        """Parses a condition on these columns; see conditions.py. Refuses a tolerance that was not counted."""
-        made = conditions.parse(text, {name: conditions.Column(self.dtype(name).kind in "iuf",
-                                                               tuple(self.file.guesses) if name == "guess" else ())
-                                       for name in self.names}, ALL_BY)
-        counted = self.file.tolerances[self.tolerances]
-        if made.column == "tolerance" and len(counted) and not made.met(counted).any():
-            raise KeyNotFound(f'"{text}": iterations were counted at the tolerances '
-                              f"{', '.join(map(texts.tolerance_label, counted))}")
+        """Parses a condition on a column of these rows or of their tasks; see conditions.py."""
+        of_rows = {name: conditions.Column(self.dtype(name).kind in "iuf",
+                                           tuple(self.file.guesses) if name == "guess" else ())
+                   for name in self.names if self._in_rows(name) or name in conditions.OF_ROWS}
+        made = conditions.parse(text, ChainMap(of_rows, self.of_tasks.known()), ALL_BY)
+        if made.column not in of_rows:
+            return self.of_tasks.checked(made)
+        if made.column == "guess":
+            conditions.require_met(made, self.labels[self.guesses], "guess")
+        elif made.column == "tolerance":
+            conditions.require_met(made, self.file.tolerances[self.tolerances], "tolerance")
         return made
 
     def blocks(self, names, where=()):
         """Yields {name: Column} with the rows that meet all conditions, in the file's order."""
-        tasks, guesses, tolerances, conditions_left = self._narrowed(where)
+        tasks, guesses, tolerances, conditions_left = self.narrowed(where)
         needed = list(dict.fromkeys([*names, *(condition.column for condition in conditions_left)]))
         guesses = guesses if self.by_guess else [None]
         tolerances = tolerances if self.by_tolerance else [None]
@@ -171,7 +179,7 @@ class Tidy:
     def arrays(self, names, where=()):
         """(task of every row, indices of guesses, of tolerances, {dataset: rows}) of whole datasets with their axes.
         Raises KeyNotFound for a condition on a column with several values in a row."""
-        tasks, guesses, tolerances, conditions_left = self._narrowed(where)
+        tasks, guesses, tolerances, conditions_left = self.narrowed(where)
         for condition in conditions_left:
             if self.shape.get(condition.column) != ():
                 raise KeyNotFound(f"{condition.text}: {condition.column} has a value for every guess or tolerance, so "
@@ -194,7 +202,7 @@ class Tidy:
         whole = {name: np.concatenate(parts) for name, parts in found.items()}
         return np.concatenate(owners), guesses, tolerances, whole
 
-    def _narrowed(self, where):
+    def narrowed(self, where):
         """The tasks, guesses and tolerances that meet the conditions, and the remaining conditions, which are on
         rows."""
         tasks, guesses, tolerances, left = self.tasks, self.guesses, self.tolerances, []
@@ -204,10 +212,12 @@ class Tidy:
                 guesses = [g for g in guesses if condition.met(self.labels)[g]]
             elif name == "tolerance":
                 tolerances = [t for t in tolerances if condition.met(self.file.tolerances)[t]]
-            elif self._is_measured(name):
+            elif self._in_rows(name):
                 left.append(condition)
             else:
-                tasks = tasks[condition.met(self._of_tasks(name))[tasks]]
+                tasks = tasks[self.of_tasks.met(condition)[tasks]]
+        if self.by_guess and not guesses or self.by_tolerance and not tolerances:
+            tasks = tasks[:0]
         return tasks, guesses, tolerances, left
 
     def _belongs(self, tasks, g):
@@ -250,6 +260,11 @@ class Tidy:
         return name not in (*OF_TASKS, "guess", "tolerance") and (name in self.datasets or
                                                                   name not in self.file.parameters)
 
+    def _in_rows(self, name):
+        """Whether a column may differ between the rows of a task."""
+        return name in self.names and self._is_measured(name) and (
+            self.level != "tasks" or bool(self.shape[self._source(name)[0]]))
+
     def _column(self, name, tasks, rows, parts, g, t):
         """The Column of a name. `parts` caches a block's columns, so that guesses share an array if it is equal for
         them."""
@@ -267,12 +282,8 @@ class Tidy:
     def _of_tasks(self, name):
         """A value for every task of the file, in a cached array."""
         if name not in self.whole:
-            if name in OF_TASKS:
-                values = np.arange(self.file.task_count) if name == "task" else getattr(self.file, name)
-            else:
-                parameter = self.file.parameters[name]
-                values = parameter.values if parameter.values.ndim == 1 else parameter.texts()
-            self.whole[name] = values
+            self.whole[name] = self.of_tasks.values(self.of_tasks[name]) if name in OF_TASKS else \
+                self.file.parameters[name].flat()
         return self.whole[name]
 
     def _source(self, name):
