@@ -20,7 +20,7 @@ import math
 import sys
 
 from rodsweep.reading import commandline, comparison, texts
-from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.errors import KeyNotFound, listed
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.reading.task_columns import TaskColumns
 
@@ -29,9 +29,9 @@ EXAMPLES = """examples:
   rodsweep compare results/jacobi.h5 results/icc.h5 --by parameters
   rodsweep compare old.h5 new.h5 --tasks --csv >differing.csv
 
-exit codes: 0 all results in both files are bitwise equal; 8 results differ; 2 an error in the command line or a file,
-or no task is done in both"""
-DIFFER = 8
+exit codes: 0 all results in both files are bitwise equal; 8 results differ; 10 results are damaged in one of the files;
+2 an error in the command line or a file, or no task is done in both"""
+DIFFER, DAMAGED = 8, 10
 MOST_KEYS, MOST_CHANGES, LONGEST = 20, 10, 60
 
 
@@ -65,7 +65,12 @@ def main():
             raise KeyNotFound("no task is done in both files, so nothing was compared" if len(pairs.a) else
                               "no task is in both files, so nothing was compared" +
                               hint * (options.by == "everything"))
-    sys.exit(DIFFER if found.differing else 0)
+        damaged = found.damaged()
+    if damaged:
+        print(f"compare.py: results of {options.file} or {options.other} are damaged: values and checksum of "
+              f"task{'s' * (len(damaged) > 1)} {listed([str(task) for task in damaged])} contradict each other; `rodsweep info FILE --verify` "
+              "tells in which file", file=sys.stderr)
+    sys.exit(DAMAGED if damaged else DIFFER if found.differing else 0)
 
 
 def text(found, pairs, keys, options):
@@ -155,7 +160,7 @@ def as_json(found, pairs, keys, options):
                       "pending": found.pending, "differing": len(found.differing)},
             "columns": [{"column": c.path, "tasks": c.tasks, "values": c.values, "largest": finite(c.largest),
                          "task": c.task} for c in found.columns.values()],
-            "left_out": found.left_out, "cg_ratio": list(ratio_rows(found)),
+            "damaged": found.damaged(), "left_out": found.left_out, "cg_ratio": list(ratio_rows(found)),
             "times": [dict(zip(("time", "a_s", "b_s", "ratio", "tasks"), row)) for row in found.times()]}
     if options.tasks:
         made["differing"] = list(task_rows(found))

@@ -30,7 +30,7 @@ constexpr const char* exit_codes =
     "  7  standard output could not be written; everything else succeeded\n"
     "  8  rerun, compare: the results differ\n"
     "  9  the training diverged; its best model is kept\n"
-    "  10 info --verify: results in the file are damaged";
+    "  10 info --verify, compare: results in a file are damaged";
 
 constexpr const char* main_help =
     "Examples:\n"

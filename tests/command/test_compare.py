@@ -13,7 +13,7 @@ TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path[:0] = [os.path.join(TESTS, "..", "analysis"), os.path.join(TESTS, "analysis")]
 import numpy as np
 import running
-from program import ALL_DONE, DATA, DIFFER, ROD, USER_ERROR, Case, changed, rodsweep, sweep
+from program import ALL_DONE, DAMAGED, DATA, DIFFER, ROD, USER_ERROR, Case, changed, rodsweep, sweep
 from rodsweep.reading import intervals
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -48,6 +48,24 @@ class Compare(Case):
         self.assertRegex(said, r"CG ratio at 1e-2.*\n +guess +A +B +B - A +95 % +tasks\n"
                                r"  previous +0\.\d+ +0\.\d+ +\+0 +- +4\n")
         self.assertRegex(said, r"times, medians\n.*\n  whole task ")
+
+    def test_damage_in_either_file_is_no_difference(self):
+        def flip(path, row, value):
+            def change(h5):
+                h5[path][row] = value
+            return change
+        for name, path, row, value in (("value", "/steps/joint_gap", 7, 5.0), ("sum", "/tasks/checksum", 1, 7),
+                                       ("rows", "/tasks/steps", 1, 5)):
+            damaged = changed(f"{name}.h5", flip(path, row, value))
+            for pair in ((sweep(), damaged), (damaged, sweep())):
+                with self.subTest(of=name, pair=pair):
+                    done = running.run("compare.py", *pair, "--json")
+                    self.assertEqual(done.code, DAMAGED, done.stderr)
+                    self.assertEqual(json.loads(done.stdout)["damaged"], [1])
+                    self.assertIn("task 1 contradict each other", done.stderr)
+        refused = running.run("compare.py", sweep(), changed("state.h5", flip("/tasks/state", 2, 9)))
+        self.assertEqual(refused.code, USER_ERROR)
+        self.assertIn("state.h5 is damaged: /tasks/state of task 2 is 9; must be 0 or 1", refused.stderr)
 
     def test_sweeps_overlap_in_what_both_have(self):
         other = sweep("wider", samples=3, scene={**ROD, "segments": {"grid": [11, 8]}},

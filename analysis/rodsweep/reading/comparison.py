@@ -159,6 +159,24 @@ class Comparison:
     def outcomes_differ(self):
         return self.one.outcome[self.a] != self.other.outcome[self.b]
 
+    def damaged(self):
+        """Tasks of A whose values contradict a checksum, in A or B: those with equal checksums and other values, and, of
+        equal jobs, those with other checksums or row counts and equal values. A task's number is part of its checksum."""
+        same_jobs = not key_differences(self.one, self.other)
+        found = []
+        for place in np.flatnonzero(self.a == self.b):
+            task = int(self.a[place])
+            equal = self.one.h5["/tasks/checksum"][task] == self.other.h5["/tasks/checksum"][task]
+            whole = same_jobs and not (_datasets(self.one).keys() ^ _datasets(self.other).keys())
+            differs = int(place) in self.differing or (whole and self._rows(self.one, task) != self._rows(self.other, task))
+            if (equal and differs) or (whole and not equal and not differs):
+                found.append(task)
+        return found
+
+    @staticmethod
+    def _rows(file, task):
+        return [int(file.h5[f"/tasks/{count}"][task]) for _, count in PLACES.values() if f"/tasks/{count}" in file.h5]
+
     def ratios(self):
         """Yields (guess's label, tolerance, Estimates of the ratio in one, in the other and of the difference)."""
         ok = self._both_ok()

@@ -58,7 +58,12 @@ class SweepFile:
             kind = as_text(self.h5.attrs.get("kind", ""))
             raise SweepFileError(f"{self.path} is a rodsweep file{f' of kind {kind}' if kind else ''} "
                                  "without tasks (/tasks/state): not the results of a sweep")
-        self.complete = self.h5["/tasks/state"][:] == 1
+        states = self.h5["/tasks/state"][:]
+        if (states > 1).any():
+            task = int(np.argmax(states > 1))
+            raise SweepFileError(f"{self.path} is damaged: /tasks/state of task {task} is {states[task]}; must be 0 or 1. Run "
+                                 "its job with --resume to verify all tasks and repeat damaged ones")
+        self.complete = states == 1
         self.task_count = len(self.complete)
         self.outcome = np.full(self.task_count, "pending", dtype="U32")
         self.outcome[self.complete] = decoded(self._required("/tasks/outcome")[:])[self.complete]
