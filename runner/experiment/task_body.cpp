@@ -13,9 +13,22 @@
 #include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/measured_solve.hpp"
 #include "runner/file/extension.hpp"
+#include "solver/linear/interruption.hpp"
 
 namespace rodsweep {
 namespace {
+
+/// Returns whether `part` came to its end before `stop` returned true.
+template <class Part>
+bool unless_stopped(const StopRequested& stop, Part&& part) {
+  const Interruptible interruptible([&] { return stop && stop(); });
+  try {
+    part();
+    return true;
+  } catch (const InterruptedComputation&) {
+    return false;
+  }
+}
 
 /// If the task throws, its record keeps only the error message.
 bool evaluate_alone(const TaskRun& run, const AxisSizes& sizes, const Evaluate& evaluate, const StopRequested& stop) {
@@ -77,7 +90,8 @@ BatchBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       const Task task = plan.task(tasks[i]);
       try {
-        records[i].prepare(task, sizes);
+        if (!unless_stopped(stop, [&] { records[i].prepare(task, sizes); }))
+          return std::vector<TaskResult>(tasks.size());
       } catch (const std::bad_alloc&) {
         throw std::runtime_error(fmt::format("the results of task {} do not fit: {}", task.index,
                                              out_of_memory_text() + ", or record less (\"record\" in the job)"));
@@ -91,8 +105,8 @@ BatchBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
       return results;
     }
     for (std::size_t i = 0; i < tasks.size(); ++i) {
-      write(runs[i].task, records[i], nullptr);
-      results[i] = {records[i].outcome, records[i].message};
+      if (unless_stopped(stop, [&] { write(runs[i].task, records[i], nullptr); }))
+        results[i] = {records[i].outcome, records[i].message};
     }
     return results;
   };
@@ -114,12 +128,12 @@ BatchBody extending_body(const Plan& plan, const Extension& extension, WriteReco
     }
     if (use == Extension::Use::copy) {
       const TaskOrigin origin = extension.origin(index);
-      write(task, taken, &origin);
+      if (!unless_stopped(stop, [&] { write(task, taken, &origin); })) return {};
       return {taken.outcome, taken.message};
     }
     record.prepare(task, sizes);
     if (!complete_task(plan, extension, evaluate, stop, task, taken, record)) return {};
-    write(task, record, nullptr);
+    if (!unless_stopped(stop, [&] { write(task, record, nullptr); })) return {};
     return {record.outcome, record.message};
   });
 }

@@ -8,6 +8,7 @@
 #include "runner/file/layout.hpp"
 #include "runner/plan/plan.hpp"
 #include "runner/text/checksum.hpp"
+#include "solver/linear/interruption.hpp"
 
 namespace rodsweep {
 
@@ -19,6 +20,7 @@ AxisSizes axis_sizes(const Plan& plan) {
 void TaskRecord::prepare(const Task& task, const AxisSizes& sizes) {
   outcome = TaskOutcome::pending;
   message.clear();
+  constexpr double ns_per_byte = 0.4;
   for (const Column& column : columns()) {
     std::visit(
         [&](auto* values) {
@@ -27,6 +29,7 @@ void TaskRecord::prepare(const Task& task, const AxisSizes& sizes) {
           values->reset(task.rows[column.rows].count, row_extent(column, sizes), sentinel);
         },
         column.values(*this));
+    check_interrupted(static_cast<std::int64_t>(ns_per_byte * static_cast<double>(bytes_of(column, *this).size())));
   }
   std::fill(solves.outcome.begin(), solves.outcome.end(), static_cast<std::int8_t>(SolveOutcome::not_run));
 }

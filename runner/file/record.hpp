@@ -129,7 +129,8 @@ struct TaskRecord {
     Cells<std::int8_t> copied_guess;    ///< [1, guess] /
   } timing;
 
-  /// Sizes all columns for this task and fills them with sentinels. Reuses the memory of an earlier task.
+  /// Sizes all columns for this task and fills them with sentinels. Reuses the memory of an earlier task. Can
+  /// be interrupted (solver/linear/interruption.hpp).
   void prepare(const Task& task, const AxisSizes& sizes);
 };
 

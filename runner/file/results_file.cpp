@@ -21,6 +21,7 @@
 #include "runner/file/task_reader.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/plan/task_outcome.hpp"
+#include "solver/linear/interruption.hpp"
 
 namespace rodsweep {
 namespace {
@@ -160,6 +161,25 @@ std::string these_tasks(const std::vector<std::uint8_t>& again, Again why) {
   if (count == 0) return "";
   const auto first = std::find(again.begin(), again.end(), why) - again.begin();
   return count == 1 ? fmt::format("task {} is", first) : fmt::format("{} tasks (first: {}) are", count, first);
+}
+
+/// Writes a column of a task block by block. Subtracts the bytes from `bytes_left` of its record. If interrupted, throws
+/// InterruptedComputation unless little is left.
+void write_in_blocks(const hdf5::RowDataset& column, hid_t type, const RowRange& rows, std::string_view bytes,
+                     std::size_t& bytes_left) {
+  constexpr std::size_t block = 16 << 20, little = 64 << 20;
+  constexpr double ns_per_byte = 2;
+  const std::size_t row_bytes = bytes.size() / static_cast<std::size_t>(rows.count);
+  const auto block_rows = static_cast<std::int64_t>(std::max<std::size_t>(1, block / row_bytes));
+  for (std::int64_t done = 0; done < rows.count; done += block_rows) {
+    const std::int64_t count = std::min(block_rows, rows.count - done);
+    const std::size_t size = static_cast<std::size_t>(count) * row_bytes;
+    column.write(type, static_cast<hsize_t>(rows.first + done), static_cast<hsize_t>(count),
+                 bytes.data() + static_cast<std::size_t>(done) * row_bytes);
+    bytes_left -= size;
+    if (is_interrupted(static_cast<std::int64_t>(ns_per_byte * static_cast<double>(size))) && bytes_left > little)
+      check_interrupted(0);
+  }
 }
 
 constexpr double shortest_pause_s = 0.05, busy_share = 0.02;  // share of the time for syncs
@@ -370,16 +390,19 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
     throw std::logic_error(
         fmt::format("task {} is complete in {} and must not be written again", task.index, open.path.native()));
   }
+  std::size_t bytes_left = 0;
+  for (const Column& column : columns()) bytes_left += bytes_of(column, record).size();
   for (std::size_t c = 0; c < open.columns.size(); ++c) {
     const Column& column = columns()[c];
     const RowRange& rows = task.rows[column.rows];
-    const auto values = static_cast<std::int64_t>(bytes_of(column, record).size() / H5Tget_size(column.type()));
+    const std::string_view bytes = bytes_of(column, record);
+    const auto values = static_cast<std::int64_t>(bytes.size() / H5Tget_size(column.type()));
     const std::int64_t expected = rows.count * row_width(column, open.sizes);
     if (values != expected) {
       throw std::logic_error(fmt::format("the record of task {} holds {} values for {}, not {}", task.index, values,
                                          column.path, expected));
     }
-    if (expected > 0) open.columns[c].write(column.type(), rows.first, rows.count, bytes_of(column, record).data());
+    if (expected > 0) write_in_blocks(open.columns[c], column.type(), rows, bytes, bytes_left);
   }
   const auto write_one = [&](const hdf5::RowDataset& dataset, auto value) {
     dataset.write(hdf5::type_of<decltype(value)>(), task.index, 1, &value);

@@ -74,7 +74,8 @@ class ResultsFile {
   void abandon(const Task& task, const Try& tried = {});
 
   /// Independent: any rank, any task not done(), once. The task is complete after the next commit(); calls it if due.
-  /// `origin`: who ran the task, if not this run.
+  /// `origin`: who ran the task, if not this run. Within an Interruptible, an interruption ends the writing of a long
+  /// record (InterruptedComputation); the task is then not complete.
   void write(const Task& task, const TaskRecord& record, const TaskOrigin* origin = nullptr);
 
   /// Independent: syncs this rank's tasks to disk, then marks them as complete.

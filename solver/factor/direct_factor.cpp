@@ -19,7 +19,8 @@ std::optional<CondensedFactor> condensed(const Rod& rod, double cost_of_whole) {
 }  // namespace
 
 DirectFactor::DirectFactor(const Rod& rod) {
-  const BlockMatrix pattern = LinearSystem(rod).matrix();
+  const LinearSystem system(rod);
+  const BlockMatrix& pattern = system.matrix();
   EliminationPlan plan = plan_elimination(pattern, root_to_leaf_order(rod));
   refuse_too_large(plan);
   condensed_ = condensed(rod, plan.cost);

@@ -11,6 +11,7 @@
 #include "runner/file/layout.hpp"
 #include "runner/file/record.hpp"
 #include "runner/text/checksum.hpp"
+#include "solver/linear/interruption.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
@@ -39,6 +40,33 @@ std::vector<T> task_rows(const hdf5::File& file, const Column& column, const Tas
   const RowRange rows = task.rows[column.rows];
   const std::int64_t width = row_width(column, sizes);
   return {all.begin() + rows.first * width, all.begin() + (rows.first + rows.count) * width};
+}
+
+TEST_CASE("the writing of a long record can be stopped, and then its task is pending") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(with(
+      "/samples", "1",
+      with("/record", R"({"trajectory_every": 1})",
+           with("/time/steps", "2000",
+                with("/scene/segments", "1000", without("/guesses", with("/solve", R"({"method": "direct"})")))))));
+  const Task task = plan.task(0);
+  TaskRecord record;
+  record.prepare(task, axis_sizes(plan));
+  bool asked = false;
+  const auto stop = [&] { return asked = true; };
+  {
+    ResultsFile file = ResultsFile::create(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
+    {
+      const Interruptible interruptible(stop);
+      CHECK_THROWS_AS(file.write(task, record), InterruptedComputation);
+    }
+    {
+      const Interruptible interruptible(stop);
+      CHECK_THROWS_AS(TaskRecord().prepare(task, axis_sizes(plan)), InterruptedComputation);
+    }
+    CHECK(asked);
+  }
+  CHECK(inspect(folder / "a.h5").pending == 1);
 }
 
 TEST_CASE("a record comes back from the file value by value, whatever the order of writing") {
