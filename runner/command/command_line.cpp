@@ -36,7 +36,7 @@ constexpr const char* main_help =
     "Examples:\n"
     "  rodsweep validate jobs/demo.json         check a job\n"
     "  rodsweep plan jobs/demo.json             estimate tasks, bytes and core-hours\n"
-    "  mpirun -n 9 rodsweep run jobs/demo.json  run a job with 8 workers and a master\n"
+    "  rodsweep run jobs/demo.json -n 8         run a job with 8 workers on this machine\n"
     "  rodsweep status results/demo.h5          show the progress, also during the run\n"
     "  rodsweep query results/demo.h5           list the tasks as a table, CSV or JSON\n"
     "'rodsweep COMMAND --help' shows the help of a command.\n\n"

@@ -56,6 +56,12 @@ class SlurmScript(unittest.TestCase):
         for code in (0, 2, 3, 4, 5):
             self.assertEqual(self.run_script(code=code).count("mpirun "), 1)
 
+    def test_a_limit_that_was_short_only_after_a_crash_is_no_reason_to_give_up(self):
+        stand_in("mpirun", 'echo "mpirun $*"; [ -e crashed ] && exit 5; touch crashed; exit 137')
+        self.assertIn("scontrol requeue 7", self.run_script(code=4))
+        stand_in("mpirun", "exit 5")
+        self.assertNotIn("scontrol", self.run_script(code=5))
+
     def test_a_requeued_job_waits_for_a_node_that_still_writes(self):
         said = self.run_script(code=2, SLURM_RESTART_COUNT=1)
         self.assertEqual((said.count("mpirun "), said.count("sleep 30")), (10, 10))
