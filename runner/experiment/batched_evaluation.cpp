@@ -114,7 +114,11 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop) {
     const double share_s = step_watch.seconds() / static_cast<double>(left.size());
     keep([&](int lane, Member& member) {
       stepper.write(lane, member.scene);
-      member.run.record->timing.rest_s[static_cast<std::size_t>(s)] = static_cast<float>(share_s);
+      TaskRecord& record = *member.run.record;
+      const auto row = static_cast<std::size_t>(s);
+      record.timing.rest_s[row] = static_cast<float>(share_s);
+      record.timing.solve_s[row] = 0;  // the whole step is one computation
+      record.steps.cg_iterations[row] = record.steps.products[row] = 0;
       return member.simulation.finish_step(s, member.scene, reports[static_cast<std::size_t>(lane)]);
     });
   }

@@ -40,8 +40,12 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
     solve.take_elapsed_s();
     const Stopwatch step_watch;
     const StepReport report = stepper.step(*projection);
-    record.timing.rest_s[static_cast<std::size_t>(step)] =
-        static_cast<float>(step_watch.seconds() - solve.take_elapsed_s());
+    const auto row = static_cast<std::size_t>(step);
+    record.timing.rest_s[row] = static_cast<float>(step_watch.seconds() - solve.take_elapsed_s());
+    const SolveEffort effort = solve.take_effort();
+    record.timing.solve_s[row] = static_cast<float>(effort.seconds);
+    record.steps.cg_iterations[row] = effort.iterations;
+    record.steps.products[row] = effort.products;
     if (!simulation.finish_step(step, scene, report)) break;
   }
   solve.finish();

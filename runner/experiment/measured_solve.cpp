@@ -92,6 +92,7 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
   for (std::size_t g = 0; g < spec.guesses.size(); ++g)
     if (one ? static_cast<int>(g) == spec.own_guess : spec.settled.empty() || spec.settled[g] == 0)
       guesses_.push_back({g, is_zero(spec.guesses[g]), TimedGuess(make_guess(spec.guesses[g], spec, scene))});
+  if (!spec.output.counts) return;
   const std::size_t tolerances = tolerance_ladder().size();
   for (const Guess& guess : guesses_) {
     const auto reset = [&](auto& sums) { std::fill_n(&sums(0, guess.column), tolerances, 0); };
@@ -124,7 +125,10 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
 
   solvers.exact_outcome.reset();
   SolveOutcome outcome = std::isfinite(system.largest_rhs()) ? SolveOutcome::converged : SolveOutcome::not_a_number;
-  if (direct_) outcome = solve_directly(system, at, solvers);
+  if (direct_) {
+    outcome = solve_directly(system, at, solvers);
+    if (spec_.own_guess < 0) effort_.seconds += assemble_s + median(solvers.direct_s);
+  }
   if (spec_.output.solves) {
     log_system(system, scene_.rods[static_cast<std::size_t>(at.rod)], at, row, record_);
     record_.timing.assemble_s[row] = static_cast<float>(assemble_s);
@@ -145,6 +149,7 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
       outcome = solvers.guesses.front().advanced.outcome;
     }
     accept(at, row, solvers, delta_lambda);
+    if (spec_.own_guess >= 0) add_effort(assemble_s, solvers);
   }
   elapsed_s_ += whole.seconds();
   return outcome;
@@ -169,7 +174,7 @@ SolveOutcome MeasuredSolve::solve_reference(const LinearSystem& system, RodSolve
       .outcome;
 }
 
-/// One untimed tight solve per guess and norm. Returns `converged` unless a guess has an invalid first residual.
+/// Proposes all guesses. Unless nothing is counted, one untimed tight solve per guess and norm follows. Returns `converged` unless a guess has an invalid first residual.
 SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePosition& at, std::size_t row,
                                   RodSolvers& solvers) {
   const VectorX& b = system.rhs();
@@ -183,6 +188,13 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     guesses_[g].guess.prepare(at);
     own.proposal = guesses_[g].guess.propose(system, at, own.x0);
     const int start = own.proposal.start_products();
+    const std::size_t column = guesses_[g].column;
+    if (spec_.output.solves) {
+      record_.solves.start_matvecs(row, column) = static_cast<std::int16_t>(start);
+      record_.solves.renewed(row, column) =
+          own.proposal.renewed || (spec_.solve.kept_steps() > 0 && solvers.renewed) ? 1 : 0;
+    }
+    if (!spec_.output.counts) continue;
     const auto tight_solve = [&](CgSolver& cg, double reference, std::vector<std::int16_t>& iterations) {
       if (rounding) {
         std::fill(iterations.begin(), iterations.end(), std::int16_t{0});
@@ -198,7 +210,6 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     CgReport other;
     if (solvers.tight_other) other = tight_solve(*solvers.tight_other, reference_other, solvers.iterations_other);
     const CgReport report = tight_solve(*solvers.tight, solvers.reference, solvers.iterations);
-    const std::size_t column = guesses_[g].column;
     if (failure != SolveOutcome::not_run) {
       if (spec_.output.solves) record_.solves.outcome(row, column) = static_cast<std::int8_t>(failure);
       unusable_ = spec_.guesses[column].label;
@@ -215,9 +226,6 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
 
     if (!spec_.output.solves) continue;
     record_.solves.outcome(row, column) = static_cast<std::int8_t>(report.outcome);
-    record_.solves.start_matvecs(row, column) = static_cast<std::int16_t>(start);
-    record_.solves.renewed(row, column) =
-        own.proposal.renewed || (spec_.solve.kept_steps() > 0 && solvers.renewed) ? 1 : 0;
     std::copy(solvers.iterations.begin(), solvers.iterations.end(), &record_.solves.iterations(row, column));
     if (rounding) continue;
     system.multiply(solvers.x.data(), solvers.residual.data());
@@ -258,6 +266,13 @@ void MeasuredSolve::accept(const SolvePosition& at, std::size_t row, RodSolvers&
   }
 }
 
+void MeasuredSolve::add_effort(double assemble_s, RodSolvers& solvers) {
+  RodSolvers::PerGuess& own = solvers.guesses.front();
+  effort_.seconds += assemble_s + guesses_.front().guess.seconds() + median(own.cg_s);
+  effort_.iterations += own.advanced.iterations;
+  effort_.products += own.advanced.products + own.proposal.products;
+}
+
 void MeasuredSolve::add(CountSums& sums, std::size_t column, const std::vector<std::int16_t>& iterations, int used,
                         int start_matvecs) const {
   for (std::size_t t = 0; t < iterations.size(); ++t) {
@@ -268,6 +283,8 @@ void MeasuredSolve::add(CountSums& sums, std::size_t column, const std::vector<s
     if (!sums.matvecs.empty()) sums.matvecs(0, column, t) += spent + start_matvecs;
   }
 }
+
+SolveEffort MeasuredSolve::take_effort() { return std::exchange(effort_, {}); }
 
 double MeasuredSolve::take_elapsed_s() { return std::exchange(elapsed_s_, 0); }
 

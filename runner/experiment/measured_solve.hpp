@@ -27,6 +27,12 @@ namespace rodsweep {
 /// Sets cg_ratio from the sums, for all guesses that were tried.
 void set_cg_ratios(const TaskSpec& spec, TaskRecord& record);
 
+/// Of the solves that advanced the rods: assembly, guesses and solves [s], and CG's share.
+struct SolveEffort {
+  double seconds = 0;
+  int iterations = 0, products = 0;  ///< of CG; products with A include those of guesses
+};
+
 class MeasuredSolve : public LinearSolve {
  public:
   /// Fills the rows of /solves, their times and the per-task sums of `record`. All arguments must outlive this.
@@ -38,6 +44,9 @@ class MeasuredSolve : public LinearSolve {
 
   /// Wall time of assembly and solves since the last call [s].
   double take_elapsed_s();
+
+  /// The effort since the last call. Its time is 0 if an untimed solve advanced the rods (paired, reference "cg").
+  SolveEffort take_effort();
 
   /// Call once, at the end of the task.
   void finish();
@@ -51,6 +60,7 @@ class MeasuredSolve : public LinearSolve {
   SolveOutcome count(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
   void time(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
   void accept(const SolvePosition& at, std::size_t row, RodSolvers& solvers, const VectorX& solution);
+  void add_effort(double assemble_s, RodSolvers& solvers);
   void add(CountSums& sums, std::size_t column, const std::vector<std::int16_t>& iterations, int used,
            int start_matvecs) const;
 
@@ -62,6 +72,7 @@ class MeasuredSolve : public LinearSolve {
   std::vector<Guess> guesses_;
   std::vector<std::unique_ptr<RodSolvers>> solvers_;  // created at a rod's first solve
   double elapsed_s_ = 0;
+  SolveEffort effort_;
   std::string unusable_;  // label of a guess with an invalid first residual
 };
 

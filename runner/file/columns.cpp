@@ -130,6 +130,11 @@ std::vector<Column> all_columns() {
                                                           "angular momentum of the dynamic segments about the origin"),
       column<&R::steps, &Steps::newton_iterations>("/steps/newton_iterations", Rows::step, none, "1",
                                                    "Newton (or Gauss-Seidel) iterations used"),
+      column<&R::steps, &Steps::cg_iterations>(
+          "/steps/cg_iterations", Rows::step, none, "1",
+          "CG iterations of the solves that advanced the rods; 0 without CG, or if the reference advanced them"),
+      column<&R::steps, &Steps::products>("/steps/products", Rows::step, none, "1",
+                                          "products with A of these solves and their guesses"),
       column<&R::steps, &Steps::newton_residual>("/steps/newton_residual", Rows::step, none, "1",
                                                  "max |C + alpha~ lambda| at the end of the step"),
       column<&R::steps, &Steps::momentum_residual>(
@@ -211,6 +216,9 @@ std::vector<Column> all_columns() {
       column<&R::timing, &Timing::cg_s>(
           "/timing/solves/cg_s", Rows::solve, guess, "s",
           "preconditioner set-up and CG to the job's tolerance; median of solve.timing_repeats"),
+      column<&R::timing, &Timing::solve_s>("/timing/steps/solve_s", Rows::step, none, "s",
+                                           "assembly, guesses and solves that advanced the rods, with one rest_s the "
+                                           "time of the step"),
       column<&R::timing, &Timing::rest_s>("/timing/steps/rest_s", Rows::step, none, "s",
                                           "the step without assembly, guesses and solves"),
       column<&R::timing, &Timing::source_task>(

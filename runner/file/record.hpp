@@ -90,6 +90,7 @@ struct TaskRecord {
     Cells<double> time_s, length_drift, joint_gap, kinetic_energy_j, potential_energy_j, elastic_energy_j;
     Cells<double> momentum_kg_m_s, angular_momentum_kg_m2_s;  ///< [.., 3]
     Cells<std::int16_t> newton_iterations;
+    Cells<std::int32_t> cg_iterations, products;  ///< of the solves that advanced the rods
     Cells<double> newton_residual, momentum_residual;
     Cells<std::int32_t> contacts;
     Cells<double> penetration, contact_residual;
@@ -123,7 +124,7 @@ struct TaskRecord {
   struct Timing {
     Cells<float> assemble_s, direct_s;  ///< [solve]
     Cells<float> guess_s, cg_s;         ///< [solve, guess]; cg_s includes the preconditioner's setup
-    Cells<float> rest_s;                ///< [step] time of the step without assembly and solves
+    Cells<float> solve_s, rest_s;       ///< [step] assembly, guesses and solves that advanced the rods; all else
     Cells<double> elapsed_s;            ///< [1]
     Cells<std::int64_t> source_task;    ///< [1] \ of an extended sweep
     Cells<std::int8_t> copied_guess;    ///< [1, guess] /

@@ -18,7 +18,10 @@ Key record() {
                  choice_key("solves", "a row for every solve, or only sums for every task", {"all", "summary"})
                      .defaults_to("all")
                      .setting(),
-                 choice_key("norms", "count iterations in both norms, or only in solve.norm (faster)", {"both", "one"})
+                 choice_key(
+                     "norms",
+                     "count iterations in both norms, only in solve.norm (faster), or not at all, for times alone",
+                     {"both", "one", "none"})
                      .defaults_to("both")
                      .only({"sweep"}, no_guesses)
                      .setting(),

@@ -93,6 +93,7 @@ enum class StoredSystems {
 /// The settings under "record" in a job.
 struct OutputSpec {
   bool solves = true;        ///< false: "summary", no /solves rows
+  bool counts = true;        ///< false: no tight solves to count iterations
   bool other_norm = true;    ///< also count iterations in the norm that the job doesn't use
   int trajectory_every = 0;  ///< steps between frames; frame 0 is the initial state; 0: no trajectory
   StoredSystems systems = StoredSystems::none;

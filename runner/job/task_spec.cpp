@@ -197,8 +197,9 @@ Evaluation evaluation(const Point& point) {
 
 OutputSpec output_spec(const Job& job) {
   const auto& record = job.values["record"];
-  OutputSpec spec{record["solves"] == "all", record.value("norms", "one") == "both",
-                  record["trajectory_every"].get<int>(), StoredSystems::none};
+  const std::string norms = record.value("norms", "one");
+  OutputSpec spec{record["solves"] == "all", norms != "none", norms == "both", record["trajectory_every"].get<int>(),
+                  StoredSystems::none};
   if (record.contains("systems")) spec.systems = record["systems"] == "all" ? StoredSystems::all : StoredSystems::first;
   return spec;
 }

@@ -45,6 +45,39 @@ TEST_CASE("a solve that misses a tolerance counts the iterations that it spent, 
   CHECK(evaluated(five_steps(R"(["zero"])")).tasks.counted_all.unreached.back() == 0);
 }
 
+TEST_CASE("a step's effort is that of the solves that advanced it, also if nothing is counted") {
+  Json job = five_steps(R"(["zero", "previous"])");
+  job["evaluation"] = "closed_loop";
+  job["solve"]["tolerance"] = 1e-2;
+  constexpr std::size_t to_1e_2 = 1;
+  for (const std::int64_t task : {0, 1}) {
+    job["record"] = {{"norms", "one"}};
+    const TaskRecord counted = evaluated(job, task);
+    job["record"] = {{"norms", "none"}};
+    const TaskRecord timed = evaluated(job, task);
+    const auto own = static_cast<std::size_t>(task);
+    std::vector<std::int32_t> iterations(steps, 0), products(steps, 0);
+    for (const std::size_t row : rows_run(counted)) {
+      const auto step = static_cast<std::size_t>(counted.solves.step[row]);
+      iterations[step] += counted.solves.iterations(row, own, to_1e_2);
+      products[step] += counted.solves.iterations(row, own, to_1e_2) + counted.solves.start_matvecs(row, own);
+    }
+    for (const TaskRecord* record : {&counted, &timed}) {
+      CHECK(record->steps.cg_iterations == iterations);
+      CHECK(record->steps.products == products);
+      for (const float seconds : record->timing.solve_s) CHECK(seconds > 0);
+    }
+    CHECK(timed.steps.kinetic_energy_j == counted.steps.kinetic_energy_j);
+    CHECK(timed.tasks.counted_all.iterations(0, own) == -1);
+    CHECK(std::isnan(timed.tasks.counted_all.cg_ratio(0, own)));
+  }
+  const TaskRecord direct = evaluated(without("/guesses", with("/solve", R"({"method": "direct"})", five_steps("[]"))));
+  for (std::size_t step = 0; step < steps; ++step) {
+    CHECK(direct.steps.products[step] == 0);
+    CHECK(direct.timing.solve_s[step] > 0);
+  }
+}
+
 TEST_CASE("a system that is solved to rounding already takes no iteration, and is recorded as such") {
   Json job = five_steps(R"(["zero", "previous"])");
   job["scene"]["gravity_m_s2"] = {0, 0, 0};
