@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import accuracy, commandline, intervals, measures, texts
+from rodsweep.reading import commandline, intervals, measures, score, texts
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -56,9 +56,9 @@ def lines(file, tasks):
     for group in range(rod.max() + 1):
         rows = np.flatnonzero(rod == group)
         best = min(rows, key=lambda row: (step[tasks[row]], name(file, tasks[row]) != "bdf2"))
-        exact = frames(file, tasks[best])
+        exact = score.frames(file, tasks[best])
         for row in rows:
-            apart[row] = np.nan if row == best else distance(frames(file, tasks[row]), exact)
+            apart[row] = np.nan if row == best else distance(score.frames(file, tasks[row]), exact)
     found = {}
     for which, size in sorted({(name(file, task), step[task]) for task in tasks}, key=lambda key: (key[0], -key[1])):
         rows = [row for row, task in enumerate(tasks) if (name(file, task), step[task]) == (which, size)
@@ -77,13 +77,6 @@ def name(file, task):
         return file.parameters[key].values[task] if key in file.parameters else default
 
     return str(value("time.integrator", "euler")) + (" in balance" if value("time.balance", 0) == 1 else "")
-
-
-def frames(file, task):
-    """{time in ms, rounded: positions [segment, 3]}"""
-    positions = accuracy.positions(file, task)
-    times = file.h5["/trajectories/time_s"][task][:len(positions)]
-    return {round(1e3 * time, 3): frame for time, frame in zip(times.tolist(), positions)}
 
 
 def distance(path, exact):

@@ -74,7 +74,7 @@ def accuracy(file, tasks):
     """The Accuracy of complete tasks. Raises KeyNotFound if the file has no trajectories, times or reference."""
     if not all(file.has(path) for path in (REST, ASSEMBLY, DIRECT)):
         raise KeyNotFound(f"{file.path} has no times of single solves (record.solves is \"summary\")")
-    ways = [_way(file, task) for task in tasks]
+    ways = [way_of(file, task) for task in tasks]
     ok = file.ok[tasks]
     reference = _references(file, tasks, ok & np.array([way.method == "direct" for way in ways]))
     if (reference < 0).all():
@@ -128,7 +128,8 @@ def envelope(points, floor):
     return kept
 
 
-def _way(file, task):
+def way_of(file, task):
+    """The Way of a task."""
     def value(key):
         return file.parameter(key).values[task]
 

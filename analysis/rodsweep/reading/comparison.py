@@ -162,6 +162,8 @@ class Comparison:
     def damaged(self):
         """Tasks of A whose values contradict a checksum, in A or B: those with equal checksums and other values, and, of
         equal jobs, those with other checksums or row counts and equal values. A task's number is part of its checksum."""
+        if not (self.one.has("/tasks/checksum") and self.other.has("/tasks/checksum")):
+            return []
         same_jobs = not key_differences(self.one, self.other)
         found = []
         for place in np.flatnonzero(self.a == self.b):
