@@ -35,13 +35,15 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   lattice_swing lattice_preconditioners lattice_impact lattice_cells lattice_closed lattice_impact_closed \
   lattice_work_precision net_gusts net_closed \
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
+score_scenes = bending_rod helix tree net
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo report studies variants ablation pictures test test-long test-cluster test-arm bench sanitize fuzz schema pages docs format format-check tidy install uninstall clean
+.PHONY: help configure build demo report score studies variants ablation pictures test test-long test-cluster test-arm bench sanitize fuzz schema pages docs format format-check tidy install uninstall clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), write results/report.html'
 	@echo 'make report        results/report.html again: what the demo found, and the studies that were run, as a page to read'
+	@echo 'make score         the cheapest way to an error of the motion, with and without guesses, by scene (an hour; likewise)'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (two hours; continued if it was stopped)'
 	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
 	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (an hour and a half; likewise)'
@@ -91,6 +93,14 @@ report:
 	@$(call packages,build)
 	@$(write_report)
 endif
+
+# Tuning draws choose settings, test draws measure them. Its times need a machine that does nothing else.
+score: build
+	@mkdir -p results/score; for scene in $(score_scenes); do \
+	  $(BUILD)/rodsweep run jobs/score/$${scene}_tuning.json -n $(CORES) -o results/score/$${scene}_tuning.h5 --resume </dev/null || [ $$? = 3 ] || exit; \
+	  $(PYTHON) analysis/score.py --jobs results/score/$${scene}_tuning.h5; \
+	  $(BUILD)/rodsweep run results/score/$${scene}_test.json -n $(CORES) -o results/score/$${scene}_test.h5 --resume </dev/null || [ $$? = 3 ] || exit; \
+	done; analysis/results/draw.sh results score
 
 # Draws everything in analysis/results except its README.
 studies: build

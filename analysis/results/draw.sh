@@ -2,7 +2,7 @@
 # Draws the figures and tables of this folder from the files of the studies in RESULTS: `make studies` calls it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-results=${1:?usage: analysis/results/draw.sh RESULTS [variants|ablation]}
+results=${1:?usage: analysis/results/draw.sh RESULTS [variants|ablation|score]}
 out=analysis/results
 
 script() { /usr/bin/python3 "analysis/$1.py" "$results/$2.h5" "${@:3}"; }
@@ -20,6 +20,10 @@ if [ "${2:-}" = variants ]; then
     figures front rods_front --scene $scene --tolerance 1e-2,1e-3 --guess "zero,subspace 10,regression 6,copingnet factors_16,\
 copingnet factors_64,copingnet rods 3 to 0.01" >/dev/null
   done
+  exit
+fi
+if [ "${2:-}" = score ]; then
+  /usr/bin/python3 analysis/score.py "$results"/score/{bending_rod,helix,tree,net}_tuning.h5 -o $out >$out/score.txt
   exit
 fi
 if [ "${2:-}" = ablation ]; then

@@ -55,7 +55,16 @@ void check_copingnet(const Plan& plan, const guess::CopingNet& guess, const std:
                                 guess.model.filename().string()));
 }
 
+void check_learned(const Plan& plan, const std::filesystem::path& model) {
+  if (shared_model(model)->net.settings().processor != Processor::factors)
+    throw job_error(plan.job().path, "solve.learned_preconditioner.model",
+                    model.filename().string() +
+                        " is not allowed: its network has no factors; must be a model with the "
+                        "processor \"factors\"");
+}
+
 void check(const Plan& plan, const Task& task, const TaskSpec& spec) {
+  if (spec.solve.preconditioner == Preconditioner::learned) check_learned(plan, spec.solve.learned->model);
   if (is_network(spec.solve.method))
     check_model(plan, "solve.model", spec.solve.model, spec.solve.method == Method::state_network);
   for (std::size_t i = 0; i < spec.guesses.size(); ++i) {

@@ -6,8 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "network/guess/factor_preconditioner.hpp"
 #include "runner/experiment/guesses.hpp"
 #include "runner/experiment/median.hpp"
+#include "runner/experiment/models.hpp"
 #include "runner/experiment/solve_rows.hpp"
 #include "runner/experiment/timed_guess.hpp"
 #include "runner/plan/plan.hpp"
@@ -53,7 +55,7 @@ struct MeasuredSolve::RodSolvers {
   std::optional<SolveOutcome> exact_outcome;  ///< of `exact`; none until it is computed for this system
 
   RodSolvers(const Rod& rod, const LinearSystem& system, const TaskSpec& spec, std::size_t guess_count)
-      : tight(make_cg(rod, system, settings(spec, spec.solve.norm))),
+      : tight(make_cg(rod, system, settings(rod, system, spec, spec.solve.norm))),
         direct_s(static_cast<std::size_t>(spec.solve.timing_repeats)),
         iterations(tolerance_ladder().size()),
         iterations_other(iterations),
@@ -63,15 +65,20 @@ struct MeasuredSolve::RodSolvers {
     tight->keep_history(true);
     if (has_other_norm(spec)) {
       const Norm other = spec.solve.norm == Norm::natural ? Norm::true_residual : Norm::natural;
-      tight_other = make_cg(rod, system, settings(spec, other));
+      tight_other = make_cg(rod, system, settings(rod, system, spec, other));
       tight_other->keep_history(true);
     }
     for (std::size_t g = 0; g < guess_count; ++g)
-      guesses.push_back({make_cg(rod, system, settings(spec, spec.solve.norm)), exact, {}, direct_s, {}});
+      guesses.push_back({make_cg(rod, system, settings(rod, system, spec, spec.solve.norm)), exact, {}, direct_s, {}});
   }
 
-  static CgSettings settings(const TaskSpec& spec, Norm norm) {
-    return {spec.solve.preconditioner, norm, spec.solve.max_iterations, spec.solve.fill_levels};
+  static CgSettings settings(const Rod& rod, const LinearSystem& system, const TaskSpec& spec, Norm norm) {
+    CgSettings made{spec.solve.preconditioner, norm, spec.solve.max_iterations, spec.solve.fill_levels};
+    if (spec.solve.preconditioner == Preconditioner::learned)
+      made.make_learned = [&rod, &system, model = shared_model(spec.solve.learned->model)] {
+        return std::make_unique<FactorPreconditioner>(model, rod, system);
+      };
+    return made;
   }
 
   void renew_preconditioners() {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,10 @@ enum class Reference {
 
 enum class Forcing { fixed, eisenstat_walker };
 
+struct LearnedPreconditioner {
+  std::filesystem::path model;
+};
+
 struct SolveSpec {
   Method method = Method::cg;
   Preconditioner preconditioner = Preconditioner::jacobi;
@@ -68,8 +73,9 @@ struct SolveSpec {
   int lag_steps = 0;                      ///< time steps between setups of the preconditioner; 0: see kept_steps()
   int timing_repeats = 1;                 ///< times are medians over this many repeats of guess, solve and direct solve
   std::filesystem::path model;            ///< end_to_end, state_network
-  PbdStiffness stiffness;                 ///< pbd
-  Reference reference = Reference::direct;  ///< cg
+  std::optional<LearnedPreconditioner> learned;  ///< with Preconditioner::learned
+  PbdStiffness stiffness;                        ///< pbd
+  Reference reference = Reference::direct;       ///< cg
 
   bool is_direct() const {
     return method == Method::direct || (method == Method::cg && reference == Reference::direct);

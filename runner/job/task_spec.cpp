@@ -86,6 +86,13 @@ KeyTable<TimeSpec> time_keys() {
   return table;
 }
 
+KeyTable<LearnedPreconditioner> learned_preconditioner_keys() {
+  KeyTable<LearnedPreconditioner> table;
+  table.required(file_key("model", "model file of a train job, with the processor \"factors\""),
+                 &LearnedPreconditioner::model);
+  return table;
+}
+
 KeyTable<SolveSpec> solve_keys() {
   const auto stretch = [](SolveSpec& solve) -> double& { return solve.stiffness.stretch; };
   const auto bending = [](SolveSpec& solve) -> double& { return solve.stiffness.bending; };
@@ -115,7 +122,8 @@ KeyTable<SolveSpec> solve_keys() {
   table.optional(choice_key("preconditioner",
                             "preconditioner of cg. icc: no fill; block_icc: some levels of fill; cholesky: all fill; "
                             "lagged_cholesky: cholesky, reused for some steps; condensed: cg with block_icc on the "
-                            "motions of the segments where rods cross, all others eliminated"),
+                            "motions of the segments where rods cross, all others eliminated; learned: the factors of "
+                            "learned_preconditioner"),
                  Words<Preconditioner>{{"none", Preconditioner::none},
                                        {"jacobi", Preconditioner::jacobi},
                                        {"point_block_jacobi", Preconditioner::point_block_jacobi},
@@ -123,8 +131,11 @@ KeyTable<SolveSpec> solve_keys() {
                                        {"block_icc", Preconditioner::block_icc},
                                        {"cholesky", Preconditioner::cholesky},
                                        {"lagged_cholesky", Preconditioner::lagged_cholesky},
-                                       {"condensed", Preconditioner::condensed}},
+                                       {"condensed", Preconditioner::condensed},
+                                       {"learned", Preconditioner::learned}},
                  &SolveSpec::preconditioner);
+  table.optional(object_key("learned_preconditioner", "the model of the preconditioner \"learned\"").or_word("none"),
+                 learned_preconditioner_keys(), &SolveSpec::learned);
   table.optional(integer_key("fill_levels", "block_icc: levels of fill").from(0, 100), &SolveSpec::fill_levels);
   table.optional(integer_key("lag_steps",
                              "time steps between set-ups of the preconditioner, from the first Newton iteration's "
@@ -218,8 +229,16 @@ static void check_condensed(const Point& point, const Job& job) {
                       fmt::format("\"deflation\" is {}; must be another guess, such as \"subspace\"", not_allowed));
 }
 
+static void check_learned(const Point& point, const Job& job) {
+  if (method(point) == Method::cg && point.text("solve.preconditioner") == "learned" &&
+      !point.has("solve.learned_preconditioner.model"))
+    throw job_error(job.path, "solve.learned_preconditioner",
+                    "missing: the preconditioner \"learned\" needs the model of a train job: {\"model\": FILE}");
+}
+
 void check_method(const Point& point, const Job& job) {
   check_condensed(point, job);
+  check_learned(point, job);
   if (const Method own = method(point);
       point.has("time.balance") && point.number("time.balance") != 0 && own != Method::cg && own != Method::direct)
     throw job_error(job.path, "time.balance",

@@ -51,7 +51,8 @@ std::unique_ptr<BlockPreconditioner> block_preconditioner(Preconditioner kind, c
     case Preconditioner::jacobi:
     case Preconditioner::point_block_jacobi:
     case Preconditioner::icc:
-    case Preconditioner::condensed: break;
+    case Preconditioner::condensed:
+    case Preconditioner::learned: break;
     case Preconditioner::block_icc: return std::make_unique<Incomplete>(pattern, fill_levels);
     case Preconditioner::cholesky:
     case Preconditioner::lagged_cholesky: return std::make_unique<Complete>(pattern);

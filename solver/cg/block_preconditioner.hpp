@@ -11,8 +11,18 @@ namespace rodsweep {
 /// PETSc, joints in the rod's order (exact on an unbranched chain); block_icc: incomplete with `fill_levels` of fill,
 /// in reverse Cuthill-McKee order and single precision (incomplete_factor.hpp); cholesky: complete (block_factor.hpp);
 /// lagged_cholesky: the same, reused by the caller for some steps; condensed: struts by elimination, the matrix of
-/// their ends by block_icc (condensed_cg.hpp).
-enum class Preconditioner { none, jacobi, point_block_jacobi, icc, block_icc, cholesky, lagged_cholesky, condensed };
+/// their ends by block_icc (condensed_cg.hpp); learned: made by the caller (CgSettings::make_learned).
+enum class Preconditioner {
+  none,
+  jacobi,
+  point_block_jacobi,
+  icc,
+  block_icc,
+  cholesky,
+  lagged_cholesky,
+  condensed,
+  learned
+};
 
 /// Default of block_icc and condensed.
 inline constexpr int default_fill_levels = 3;
@@ -26,7 +36,7 @@ class BlockPreconditioner {
   virtual void apply(const double* r, double* z) = 0;
 };
 
-/// Null for preconditioners of PETSc.
+/// Null for preconditioners of PETSc or of the caller.
 std::unique_ptr<BlockPreconditioner> block_preconditioner(Preconditioner kind, const BlockMatrix& pattern,
                                                           int fill_levels);
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct CgSettings {
   Norm norm = Norm::true_residual;
   int max_iterations = 0;                 ///< 0: ten times the unknowns, at most 32767
   int fill_levels = default_fill_levels;  ///< of block_icc and condensed
+  std::function<std::unique_ptr<BlockPreconditioner>()> make_learned{};
 };
 
 /// The limit for a system. Iterations are stored in 16 bits.

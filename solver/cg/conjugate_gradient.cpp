@@ -48,7 +48,8 @@ PCType pc_type(Preconditioner p) {
     case Preconditioner::icc: return PCICC;
     case Preconditioner::block_icc:
     case Preconditioner::cholesky:
-    case Preconditioner::lagged_cholesky: return PCSHELL;
+    case Preconditioner::lagged_cholesky:
+    case Preconditioner::learned: return PCSHELL;
     case Preconditioner::condensed: break;  // see make_cg()
   }
   return PCNONE;
@@ -136,7 +137,9 @@ void ConjugateGradient::Impl::create() {
 
   if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
   if (settings.preconditioner == Preconditioner::icc) create_entries(true);
-  own = block_preconditioner(settings.preconditioner, a, settings.fill_levels);
+  own = settings.preconditioner == Preconditioner::learned
+            ? settings.make_learned()
+            : block_preconditioner(settings.preconditioner, a, settings.fill_levels);
 
   petsc_check(KSPCreate(PETSC_COMM_SELF, &ksp), "KSPCreate");
   petsc_check(KSPSetType(ksp, KSPCG), "KSPSetType");

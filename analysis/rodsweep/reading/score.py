@@ -22,7 +22,7 @@ from rodsweep.reading import accuracy, combinations, intervals, measures
 from rodsweep.reading.errors import KeyNotFound
 
 LEVELS = (1e-1, 1e-2, 1e-3, 1e-4)
-ALL, JACOBI = "of all", "CG, Jacobi"
+ALL, JACOBI = "cheapest of all", "CG, Jacobi"
 ANSWERS = (ALL, "CG from zero", "CG, classical guess", "CG, learned guess", JACOBI)
 _OF_KIND = dict(zip((combinations.ZERO, combinations.CLASSICAL, combinations.LEARNED), ANSWERS[1:4]))
 CLIPPED = 5
@@ -108,7 +108,7 @@ def test_job(job, settings, samples):
     for key in ("step_s", "integrator", "newton_iterations"):
         made["time"][key] = {"zip": [entry[key] for entry in entries]}
     made["solve"] = {"zip": [entry["solve"] for entry in entries]}
-    made.update(name=job["name"] + "_test", seed=job["seed"] + 1000, samples=samples,
+    made.update(name=job["name"].removesuffix("_tuning") + "_test", seed=job["seed"] + 1000, samples=samples,
                 description=f"Settings chosen on {job['name']}, on other draws.")
     return made
 

@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+"""How to simulate a scene to an accuracy in the least time, and whether a guess helps.
+
+Each NAME_tuning.h5 is a closed-loop sweep over integrators, steps, Newton iterations, methods, preconditioners, tolerances
+and guesses. --jobs writes NAME_test.json beside it: the settings that are cheapest there, on other draws. Once
+NAME_test.h5 is there, the tables have for every scene and error the wall time of a simulated second with the cheapest of
+all settings, and with the cheapest CG from zero, from a classical guess, from a learned guess, and with Jacobi (the
+setting of Shao et al. 2021). Times are medians over test draws; "÷ cheapest" is the median of the quotients with the
+cheapest of all, with its 95 % bootstrap interval. rodsweep/reading/score.py defines error and time. "-": no setting of this
+kind reached the error on the tuning draws. An error in parentheses is above its level on the test draws.
+"""
+
+import argparse
+import json
+import os
+
+import numpy as np
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import commandline, intervals, score, texts
+from rodsweep.reading.errors import KeyNotFound, SweepFileError
+from rodsweep.reading.sweepfile import SweepFile
+
+EXAMPLES = """examples:
+  analysis/score.py --jobs results/score/*_tuning.h5      # writes results/score/NAME_test.json
+  analysis/score.py results/score/*_tuning.h5             # once these jobs have run"""
+ENDING = "_tuning.h5"
+
+
+def arguments():
+    made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
+                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made.add_argument("files", nargs="+", metavar="FILE", help=f"results of a tuning job, NAME{ENDING}")
+    made.add_argument("--jobs", action="store_true", help="write NAME_test.json for each file, and do no more")
+    made.add_argument("--samples", type=commandline.whole_number, default=10, metavar="N",
+                      help="draws of the jobs that are written (default: 10)")
+    study.add_figure_arguments(made)
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    scenes = {}
+    for path in options.files:
+        if not path.endswith(ENDING):
+            raise KeyNotFound(f"{path}: the name of a tuning file ends in {ENDING}")
+        with SweepFile(path) as file:
+            found, job, source = score.runs(file), file.job(), file.runs()[-1]["job"]
+            title = str(file.scene_types()[0]).replace("_", " ")
+        if options.jobs:
+            write_job(path.replace(ENDING, "_test.json"), job, os.path.dirname(source), score.chosen(found), options.samples)
+        else:
+            with SweepFile(path.replace(ENDING, "_test.h5")) as test:
+                scenes[title] = rows_of(score.chosen(found), score.runs(test))
+    if scenes:
+        print("\n".join(table(scenes)) + "\n\n")
+        folder = options.output or os.path.join(os.path.dirname(options.files[0]), "figures")
+        width = int(options.width)
+        print("\n".join(figure(scenes, width).save(folder, "score", options.format, not options.no_caption)))
+
+
+def write_job(path, job, folder, chosen, samples):
+    """`folder` is that of `job`, to which its paths are relative."""
+    made = score.test_job(job, chosen.values(), samples)
+    for guess in made.get("guesses", []):
+        if isinstance(guess, dict) and "copingnet" in guess:
+            model = os.path.join(folder, guess["copingnet"]["model"])
+            guess["copingnet"]["model"] = os.path.relpath(model, os.path.dirname(os.path.abspath(path)))
+    text = json.dumps(made, indent=1) + "\n"
+    if os.path.exists(path):
+        with open(path, encoding="utf-8") as file:
+            if file.read() != text:
+                raise SweepFileError(f"{path} exists and has other settings: remove it and its results, or rename the tuning file")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    print(path)
+
+
+def rows_of(chosen, runs):
+    """{(level, answer): (Setting, Runs, Estimate of the time over that of the cheapest)}"""
+    made = {}
+    for (level, answer), setting in chosen.items():
+        best = chosen[level, score.ALL]
+        if setting in runs and best in runs:
+            made[level, answer] = setting, runs[setting], score.factor(runs[setting], runs[best])
+    return made
+
+
+def table(scenes):
+    lines = []
+    for title, found in scenes.items():
+        for level in score.LEVELS:
+            rows = [[f"{title}, error {100 * level:g} %", "ms/s", "÷ cheapest", "95 %", "products/s", "error there", "setting"]]
+            rows += [[answer, *cells(found.get((level, answer)), level)] for answer in score.ANSWERS]
+            lines += [*texts.aligned(rows), ""]
+    return lines[:-1]
+
+
+def cells(entry, level):
+    if not entry:
+        return ["-"] * 6
+    setting, runs, factor = entry
+    error = float(np.median(runs.error))
+    said = texts.short_text(100 * error, 2) + " %"
+    return [texts.short_text(1e3 * float(np.median(runs.time_s)), 3), texts.short_text(float(factor.value), 3),
+            interval(factor), texts.short_text(float(np.median(runs.products)), 3),
+            said if error <= level else f"({said})", setting.text()]
+
+
+def interval(estimate):
+    return f"{float(estimate.low):.3g} to {float(estimate.high):.3g}" if np.isfinite(estimate.low) else "-"
+
+
+def figure(scenes, width_mm):
+    looks = dict(zip(score.ANSWERS, style.series_styles(len(score.ANSWERS))))
+    note = ["Wall time of a simulated second over the error of the trajectory: median over test draws with 95 % interval, "
+            "settings chosen on other draws."]
+    page = layout.Page(width_mm, ["Cheapest settings"], len(scenes), 5, 40, [look.handle(name) for name, look in looks.items()],
+                       note, left_mm=12, gap_mm=4)
+    for column, (axes, (title, found)) in enumerate(zip(page.axes[0], scenes.items())):
+        for shift, (answer, look) in enumerate(looks.items()):
+            levels = [level for level in score.LEVELS if (level, answer) in found]
+            times = [intervals.median(1e3 * found[level, answer][1].time_s, found[level, answer][1].draws)
+                     for level in levels]
+            x = [level * 1.08 ** (shift - 2) for level in levels]
+            y, low, high = (np.array([float(getattr(time, part)) for time in times]) for part in ("value", "low", "high"))
+            style.errorbar(axes, x, y, yerr=style.whiskers(y, low, high), **look.line(), linewidth=0.9, markersize=2.8,
+                           elinewidth=0.5)
+        axes.set(xscale="log", yscale="log")
+        axes.invert_xaxis()
+        page.title(axes, title)
+        page.label_y(axes, column, "ms per simulated second")
+    page.label_x(0, "error / size of the scene")
+    return page
+
+
+if __name__ == "__main__":
+    commandline.run(main)

@@ -1,0 +1,37 @@
+// The learned factors of a rod's matrix as preconditioner of CG: z = F r (network/processor/factor_sweeps.hpp, and
+// coupled_factors.hpp with all couplings). F is symmetric, but nothing makes it positive: CG then ends as `indefinite`.
+// Learned preconditioners of other kinds: Li et al. 2023 (NeuralPCG), Häusner et al. 2023 (NeuralIF), Trifonov et al.
+// 2024 (PreCorrector).
+#pragma once
+
+#include <memory>
+
+#include "network/processor/coupled_inference.hpp"
+#include "network/processor/factor_inference.hpp"
+#include "network/processor/model.hpp"
+#include "solver/cg/block_preconditioner.hpp"
+#include "solver/linear/linear_system.hpp"
+
+namespace rodsweep {
+
+class FactorPreconditioner : public BlockPreconditioner {
+ public:
+  /// `rod` and `system` must outlive it. Throws std::invalid_argument if the model has no factors.
+  FactorPreconditioner(std::shared_ptr<const Model> model, const Rod& rod, const LinearSystem& system);
+
+  /// Predicts the factors of the system as it is assembled, whose matrix is `a`. Always returns true.
+  bool set_up(const BlockMatrix& a) override;
+  void apply(const double* r, double* z) override;
+
+ private:
+  std::shared_ptr<const Model> model_;
+  const Rod& rod_;
+  const LinearSystem& system_;
+  FeatureEncoder encoder_;
+  std::unique_ptr<FactorInference> factors_;
+  std::unique_ptr<CoupledInference> coupled_;  ///< with all couplings
+  Tensor<float> nodes_, edges_;
+  VectorX zero_, r_, z_;
+};
+
+}  // namespace rodsweep

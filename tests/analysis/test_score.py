@@ -1,0 +1,115 @@
+"""score.py: settings are chosen on one file and measured on another, and its numbers are those of the files' rows."""
+
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+
+import synthetic  # noqa: F401  (makes analysis/ importable)
+import numpy as np
+from rodsweep.reading import score
+from rodsweep.reading.accuracy import Way
+from rodsweep.reading.sweepfile import SweepFile
+from running import run
+
+MODEL = os.path.join(os.environ["SOURCE_DIR"], "network", "pretrained", "rods.h5")
+
+
+def runs(error, time_s):
+    draws = np.arange(5)
+    return score.Runs(draws, np.full(5, error), np.asarray(time_s) * np.ones(5), np.ones(5))
+
+
+def setting(guess="", preconditioner="jacobi", step_s=0.01, method="cg"):
+    return score.Setting(Way(method, 1, 0, 1e-2, preconditioner, guess) if guess else Way(method, 1), "bdf2", step_s)
+
+
+class Choice(unittest.TestCase):
+    FOUND = {setting(method="direct"): runs(0.05, 3), setting("zero"): runs(0.05, 5),
+             setting("zero", "block_icc"): runs(0.005, 4), setting("previous"): runs(0.05, 4.5),
+             setting("copingnet rods"): runs(0.05, 2), setting("previous", "icc"): runs(np.inf, 0.1),
+             setting("copingnet rods", step_s=0.005): runs(0.008, [1, 2, 9, 9, 9])}
+
+    def test_each_answer_is_the_fastest_of_its_kind_that_reaches_the_error(self):
+        best = score.chosen(self.FOUND)
+        self.assertEqual({answer: best.get((0.1, answer)) for answer in score.ANSWERS}, {
+            "cheapest of all": setting("copingnet rods"), "CG from zero": setting("zero", "block_icc"),
+            "CG, classical guess": setting("previous"), "CG, learned guess": setting("copingnet rods"),
+            "CG, Jacobi": setting("copingnet rods")})
+        self.assertEqual(best[0.01, "cheapest of all"], setting("zero", "block_icc"))
+        self.assertEqual(best[0.01, "CG, Jacobi"], setting("copingnet rods", step_s=0.005))
+        self.assertNotIn((0.01, "CG, classical guess"), best)
+        self.assertFalse([level for level, _ in best if level < 0.005])
+
+    def test_a_quotient_is_the_median_over_draws_that_both_have(self):
+        slow = score.Runs(np.arange(1, 7), np.zeros(6), 2.0 * np.arange(1, 7), np.ones(6))
+        base = score.Runs(np.arange(6), np.zeros(6), np.arange(6) + 1.0, np.ones(6))
+        factor = score.factor(slow, base)
+        self.assertAlmostEqual(float(factor.value), np.median(2 * np.arange(1, 6) / np.arange(2, 7)))
+        self.assertEqual(int(factor.count), 5)
+
+
+class Files(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        steps = {"grid": [0.02, 0.01]}
+        job = {"name": "rod_tuning", "kind": "sweep", "seed": 1, "samples": 2, "evaluation": "closed_loop",
+               "scene": {"type": "bending_rod", "segments": 6, "length_m": {"uniform": [1, 2]}, "radius_m": 0.05,
+                         "density_kg_m3": 1000, "youngs_modulus_pa": 1e7, "torsion_modulus_pa": 1e6, "damping_per_s": 2},
+               "time": {"duration_s": 0.32, "step_s": {"zip": [0.0025, steps, steps]},
+                        "integrator": {"zip": ["bdf2", {"grid": ["euler", "bdf2"]}, "bdf2"]},
+                        "newton_iterations": {"zip": [20, 1, {"grid": [1, 2]}]}},
+               "solve": {"zip": [{"method": "direct"}, {"method": "direct"},
+                                 {"preconditioner": {"grid": ["jacobi", "block_icc"]}, "tolerance": 1e-2}]},
+               "guesses": ["zero", "previous", {"copingnet": {"model": MODEL}}],
+               "record": {"solves": "summary", "norms": "none", "trajectory_every": 4}}
+        cls.tuning, cls.test = (os.path.join(cls.folder.name, f"rod_{which}.h5") for which in ("tuning", "test"))
+        cls.run_job(job, cls.tuning)
+
+    @staticmethod
+    def run_job(job, results):
+        path = results.replace(".h5", ".json")
+        if job:
+            with open(path, "w", encoding="utf-8") as file:
+                json.dump(job, file)
+        subprocess.run([os.environ["RODSWEEP"], "run", path, "-o", results], check=True, capture_output=True)
+
+    def test_numbers_are_those_of_the_rows(self):
+        with SweepFile(self.tuning) as file:
+            found = score.runs(file)
+            self.assertEqual(len(found), 4 + 2 * 2 * 2 * 3)
+            rows, step = file.parameter("time.step_s").values, file.parameter("time.integrator").values
+            direct = found[score.Setting(Way("direct", 1), "euler", 0.02)]
+            task = next(task for task in range(file.task_count) if rows[task] == 0.02 and step[task] == "euler"
+                        and file.own_guess[task] < 0 and file.sample[task] == 1)
+            of = slice(file.first_step[task], file.first_step[task] + 16)
+            seconds = (file.h5["/timing/steps/rest_s"][of] + file.h5["/timing/steps/solve_s"][of]).astype(float)
+            self.assertAlmostEqual(direct.time_s[1], np.minimum(seconds, 5 * np.median(seconds)).sum() / 0.32, 6)
+            order = {size: np.median(found[score.Setting(Way("direct", 1), "bdf2", size)].error) for size in (0.02, 0.01)}
+            self.assertGreater(order[0.02], 2 * order[0.01])   # of second order
+            self.assertEqual(direct.products.tolist(), [0, 0])
+
+    def test_settings_are_measured_on_other_draws_and_shown(self):
+        done = run("score.py", "--jobs", self.tuning)
+        self.assertEqual(done.code, 0, done.stderr)
+        self.run_job(None, self.test)
+        with SweepFile(self.tuning) as tuning, SweepFile(self.test) as test:
+            self.assertEqual(len(np.unique(test.sample)), 10)
+            lengths = [set(file.parameter("scene.length_m").values.tolist()) for file in (tuning, test)]
+            self.assertFalse(lengths[0] & lengths[1])
+            self.assertLessEqual(set(score.chosen(score.runs(tuning)).values()), set(score.runs(test)))
+        done = run("score.py", self.tuning, "-o", self.folder.name, "--format", "png")
+        self.assertEqual(done.code, 0, done.stderr)
+        blocks = [block.splitlines() for block in done.stdout.split("\n\n\n")[0].split("\n\n")]
+        self.assertEqual([block[0].split("  ")[0] for block in blocks],
+                         [f"bending rod, error {level} %" for level in ("10", "1", "0.1", "0.01")])
+        self.assertRegex(blocks[0][1], r"cheapest of all +[\d.]+ +1 +1 to 1 ")
+        self.assertEqual([line.split("  ")[0] for line in blocks[0][1:]], list(score.ANSWERS))
+        self.assertIn(os.path.join(self.folder.name, "score.png"), done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
