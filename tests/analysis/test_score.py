@@ -34,7 +34,8 @@ class Choice(unittest.TestCase):
     def test_each_answer_is_the_fastest_of_its_kind_that_reaches_the_error(self):
         best = score.chosen(self.FOUND)
         self.assertEqual({answer: best.get((0.1, answer)) for answer in score.ANSWERS}, {
-            "cheapest of all": setting("copingnet rods"), "CG from zero": setting("zero", "block_icc"),
+            "cheapest of all": setting("copingnet rods"), "direct solve": setting(method="direct"), "Gauss-Seidel": None,
+            "CG from zero": setting("zero", "block_icc"),
             "CG, classical guess": setting("previous"), "CG, learned guess": setting("copingnet rods"),
             "CG, Jacobi": setting("copingnet rods")})
         self.assertEqual(best[0.01, "cheapest of all"], setting("zero", "block_icc"))

@@ -22,9 +22,10 @@ from rodsweep.reading import accuracy, combinations, intervals, measures
 from rodsweep.reading.errors import KeyNotFound
 
 LEVELS = (1e-1, 1e-2, 1e-3, 1e-4)
-ALL, JACOBI = "cheapest of all", "CG, Jacobi"
-ANSWERS = (ALL, "CG from zero", "CG, classical guess", "CG, learned guess", JACOBI)
-_OF_KIND = dict(zip((combinations.ZERO, combinations.CLASSICAL, combinations.LEARNED), ANSWERS[1:4]))
+ALL, DIRECT, JACOBI, GAUSS_SEIDEL = "cheapest of all", "direct solve", "CG, Jacobi", "Gauss-Seidel"
+_OF_KIND = {combinations.ZERO: "CG from zero", combinations.CLASSICAL: "CG, classical guess",
+            combinations.LEARNED: "CG, learned guess"}
+ANSWERS = (ALL, DIRECT, *_OF_KIND.values(), JACOBI, GAUSS_SEIDEL)
 CLIPPED = 5
 REST, SOLVE = "/timing/steps/rest_s", "/timing/steps/solve_s"
 STEP, INTEGRATOR = "time.step_s", "time.integrator"
@@ -42,7 +43,7 @@ class Setting:
     def answers(self):
         """The ANSWERS that it may be."""
         if self.way.method != "cg":
-            return {ALL}
+            return {ALL, {"direct": DIRECT, "xpbd": GAUSS_SEIDEL, "pbd": GAUSS_SEIDEL}.get(self.way.method, ALL)}
         kind = _OF_KIND.get(combinations.kind_of(self.way.guess))
         return {ALL, kind} | ({JACOBI} if self.way.preconditioner == "jacobi" else set()) if kind else set()
 
