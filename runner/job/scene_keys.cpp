@@ -15,10 +15,11 @@
 namespace rodsweep {
 
 // An overload used by KeyTable.
-static void read_value(const Place& at, std::shared_ptr<const Skeleton>& skeleton) {
+static void read_value(const Place& at, std::shared_ptr<const std::vector<Skeleton>>& trees) {
   const InputFile& file = at.job().files.at(at.text());
   try {
-    skeleton = shared_skeleton(file.path, file.hash);
+    const SkeletonFile& read = shared_skeleton(file.path, file.hash);
+    trees = {std::shared_ptr<void>(), &read.trees};  // kept by shared_skeleton()
   } catch (const SkeletonError& error) {
     throw job_error(at.job().path, at.path(), error.what());
   }
@@ -212,8 +213,7 @@ void add_trees(Table& table) {
   table.required(length_key("spacing_m", "distance between neighbouring trees of a forest"), &Forest::spacing_m);
   table.optional(number_key("jitter", "range of the random displacement of a tree, relative to the spacing").from(0, 1),
                  &Forest::jitter);
-  table.required(file_key("skeleton", "SWC file of a tree: id, type, x, y, z, radius, parent"),
-                 &SkeletonTree::skeleton);
+  table.required(file_key("skeleton", "SWC file of a tree: id, type, x, y, z, radius, parent"), &SkeletonTree::trees);
   table.optional(length_key("skeleton_unit_m", "length unit of the skeleton file"), &SkeletonTree::unit_m);
   table.optional(choice_key("skeleton_up", "axis of the skeleton file that points up"),
                  Words<Up>{{"y", Up::y}, {"z", Up::z}}, &SkeletonTree::up);
@@ -308,6 +308,18 @@ std::vector<std::string> thick_rods(const Json& scenes, const std::filesystem::p
                                   .what());
     }
   });
+  return warnings;
+}
+
+std::vector<std::string> assumed_of_skeletons(const Job& job) {
+  std::vector<std::string> warnings;
+  for (const auto& [written, file] : job.files) {
+    if (file.hash.empty() || file.key_path.find(".skeleton") == std::string::npos) continue;
+    try {
+      for (const std::string& warning : shared_skeleton(file.path, file.hash).warnings) warnings.push_back(warning);
+    } catch (const SkeletonError&) {  // the plan refuses it
+    }
+  }
   return warnings;
 }
 

@@ -24,6 +24,9 @@ void check_obstacles(const nlohmann::ordered_json& scenes, const std::filesystem
 /// A warning for each scene with a rod thicker than long, at the worst of a sweep's values.
 std::vector<std::string> thick_rods(const nlohmann::ordered_json& scenes, const std::filesystem::path& file);
 
+/// What was assumed to read the job's skeletons.
+std::vector<std::string> assumed_of_skeletons(const Job& job);
+
 /// A warning for each load on a tip in steps that do not balance momentum, if the method could. `values`: of a validated job.
 std::vector<std::string> unbalanced_loads(const nlohmann::ordered_json& values, const std::filesystem::path& file);
 

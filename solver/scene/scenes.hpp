@@ -212,11 +212,11 @@ struct Forest : Tree {
   void build(Scene& scene) const;
 };
 
-/// A measured tree. Its radii are the skeleton's: an edge is a cone from its lower node's to its upper's. At a fork,
+/// Measured trees. Their radii are the skeleton's: an edge is a cone from its lower node's to its upper's. At a fork,
 /// every branch begins with the radius of its own first node: thin twigs leave thick trunks.
 struct SkeletonTree : RodParameters {
   static constexpr const char* name = "skeleton";
-  std::shared_ptr<const Skeleton> skeleton;
+  std::shared_ptr<const std::vector<Skeleton>> trees;  ///< each a rod
   double unit_m = 1;  ///< unit of its lengths
   Up up = Up::y;
   double modulus_exponent = 0;

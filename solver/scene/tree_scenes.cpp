@@ -54,19 +54,26 @@ void Tree::build(Scene& scene) const {
 }
 
 void SkeletonTree::check() const {
-  if (!skeleton || skeleton->size() < 2) throw SceneError("a skeleton needs at least two nodes");
-  if (const auto wrong = fault(*skeleton))
-    throw SceneError("node " + std::to_string(wrong->node) + " of a skeleton: " + wrong->text);
+  if (!trees || trees->empty()) throw SceneError("a skeleton needs a tree");
+  for (const Skeleton& tree : *trees) {
+    if (tree.size() < 2) throw SceneError("a skeleton needs at least two nodes");
+    if (const auto wrong = fault(tree))
+      throw SceneError("node " + std::to_string(wrong->node) + " of a skeleton: " + wrong->text);
+  }
 }
 
 SceneSize SkeletonTree::size() const {
-  const int nodes = static_cast<int>(skeleton->size());
-  return {nodes, nodes - 1};
+  int nodes = 0;
+  for (const Skeleton& tree : *trees) nodes += static_cast<int>(tree.size());
+  const int count = static_cast<int>(trees->size());
+  return {nodes, nodes - count, count, "the roots of the skeleton"};
 }
 
 void SkeletonTree::build(Scene& scene) const {
-  scene.rods.push_back(
-      rod_of(with_base_radii(placed(*skeleton, unit_m, up)), *this, modulus_exponent, Vector3::Zero()));
+  const Vector3 origin = trees->front().front().position_m;
+  for (const Skeleton& tree : *trees)
+    scene.rods.push_back(
+        rod_of(with_base_radii(placed(tree, origin, unit_m, up)), *this, modulus_exponent, Vector3::Zero()));
 }
 
 void Forest::check() const {

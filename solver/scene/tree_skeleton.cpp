@@ -88,10 +88,10 @@ Skeleton with_base_radii(Skeleton skeleton) {
   return skeleton;
 }
 
-Skeleton placed(const Skeleton& skeleton, double unit_m, Up up) {
+Skeleton placed(const Skeleton& skeleton, const Vector3& origin, double unit_m, Up up) {
   Skeleton out = skeleton;
   for (SkeletonNode& node : out) {
-    const Vector3 p = unit_m * (node.position_m - skeleton.front().position_m);
+    const Vector3 p = unit_m * (node.position_m - origin);
     node.position_m = up == Up::y ? p : Vector3(p.x(), p.z(), -p.y());
     node.radius_m *= unit_m;
   }

@@ -45,8 +45,8 @@ Skeleton with_base_radii(Skeleton skeleton);
 
 enum class Up { y, z };
 
-/// Converts a skeleton in another unit with the axis `up` upwards to metres, its root at the origin and y up.
-Skeleton placed(const Skeleton& skeleton, double unit_m, Up up);
+/// Converts a skeleton in another unit with the axis `up` upwards to metres from `origin`, y up.
+Skeleton placed(const Skeleton& skeleton, const Vector3& origin, double unit_m, Up up);
 
 struct TreeShape {
   enum class Phyllotaxis { golden, random };

@@ -202,7 +202,7 @@ TEST_CASE("a symmetric tree moves symmetrically") {
     }
   }
   SkeletonTree p;
-  p.skeleton = std::make_shared<const Skeleton>(skeleton);
+  p.trees = std::make_shared<const std::vector<Skeleton>>(1, skeleton);
   p.youngs_modulus_pa = 1e6;
   Simulation simulation(build_scene(p), 0.01);
   simulation.run(100);
@@ -246,9 +246,10 @@ TEST_CASE("trees that cannot grow are refused with quantity, value and bound") {
   CHECK_THROWS_AS(build_scene(tree(30, 3, 2)), SceneError);
   CHECK_THROWS_WITH(build_scene(tree(30, 3, 2)), "number of segments of a tree is 6.17673e+14; must be at most 1e7");
   SkeletonTree measured;
-  measured.skeleton = std::make_shared<const Skeleton>(Skeleton{{-1, {0, 0, 0}, 0.1}, {0, {0, 0, 0}, 0.1}});
+  measured.trees =
+      std::make_shared<const std::vector<Skeleton>>(1, Skeleton{{-1, {0, 0, 0}, 0.1}, {0, {0, 0, 0}, 0.1}});
   CHECK_THROWS_WITH(build_scene(measured), Catch::StartsWith("node 1 of a skeleton: position "));
-  measured.skeleton = std::make_shared<const Skeleton>(Skeleton{{-1, {0, 0, 0}, 0}, {0, {0, 1, 0}, 0.1}});
+  measured.trees = std::make_shared<const std::vector<Skeleton>>(1, Skeleton{{-1, {0, 0, 0}, 0}, {0, {0, 1, 0}, 0.1}});
   CHECK_THROWS_WITH(build_scene(measured), "node 0 of a skeleton: radius is 0; must be positive");
 }
 

@@ -31,7 +31,7 @@ class Branches {
   /// Settled under a weight along `direction`; returns displacements of all nodes' edges' upper ends.
   std::vector<Vector3> sag(const Vector3& direction, double torsion_modulus = youngs / 2.6) const {
     SkeletonTree p;
-    p.skeleton = std::make_shared<const Skeleton>(skeleton_);
+    p.trees = std::make_shared<const std::vector<Skeleton>>(1, skeleton_);
     p.density_kg_m3 = density;
     p.youngs_modulus_pa = youngs;
     p.torsion_modulus_pa = torsion_modulus;
@@ -150,7 +150,7 @@ TEST_CASE("a cone's sag is a tapered cantilever's to second order in its edges, 
     Skeleton cone{{-1, {0, 0, 0}, radius}};
     for (int i = 1; i <= edges; ++i)
       cone.push_back({i - 1, {static_cast<double>(i) / edges, 0, 0}, radius * (1 - 0.5 * i / edges)});
-    p.skeleton = std::make_shared<const Skeleton>(cone);
+    p.trees = std::make_shared<const std::vector<Skeleton>>(1, cone);
     p.density_kg_m3 = density;
     double mass = 0;
     const Scene scene = build_scene(p);
