@@ -217,7 +217,7 @@ struct Forest : Tree {
 struct SkeletonTree : RodParameters {
   static constexpr const char* name = "skeleton";
   std::shared_ptr<const std::vector<Skeleton>> trees;  ///< each a rod
-  double unit_m = 1;  ///< unit of its lengths
+  double unit_m = 1;                                   ///< unit of its lengths
   Up up = Up::y;
   double modulus_exponent = 0;
   void check() const;
