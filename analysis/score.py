@@ -4,10 +4,11 @@
 Each NAME_tuning.h5 is a closed-loop sweep over integrators, steps, Newton iterations, methods, preconditioners, tolerances
 and guesses. --jobs writes NAME_test.json beside it: the settings that are cheapest there, on other draws. Once
 NAME_test.h5 is there, the tables have for every scene and error the wall time of a simulated second with the cheapest of
-all settings, with the cheapest direct solve, with the cheapest CG from zero, from a classical guess, from a learned
-guess, and with Jacobi (the setting of Shao et al. 2021), and with the cheapest Gauss-Seidel method. Times are medians over test draws; "÷ cheapest" is the median of the quotients with the
-cheapest of all, with its 95 % bootstrap interval. rodsweep/reading/score.py defines error and time. "-": no setting of this
-kind reached the error on the tuning draws. An error in parentheses is above its level on the test draws.
+all settings, of the direct solve, of CG from zero, from a classical and from a learned guess, of CG with Jacobi (the
+setting of Shao et al. 2021), and of Gauss-Seidel. Times are medians over test draws; "÷ cheapest" is the median of the
+quotients with the cheapest of all, with its 95 % bootstrap interval. rodsweep/reading/score.py defines error and time.
+"-": no setting of this kind reached the error on the tuning draws. An error in parentheses is above its level on the test
+draws.
 """
 
 import argparse
