@@ -65,12 +65,11 @@ def main():
             raise KeyNotFound("no task is done in both files, so nothing was compared" if len(pairs.a) else
                               "no task is in both files, so nothing was compared" +
                               hint * (options.by == "everything"))
-        damaged = found.damaged()
-    if damaged:
+    if found.damaged:
         print(f"compare.py: results of {options.file} or {options.other} are damaged: values and checksum of "
-              f"task{'s' * (len(damaged) > 1)} {listed([str(task) for task in damaged])} contradict each other; `rodsweep info FILE --verify` "
-              "tells in which file", file=sys.stderr)
-    sys.exit(DAMAGED if damaged else DIFFER if found.differing else 0)
+              f"task{'s' * (len(found.damaged) > 1)} {listed([str(task) for task in found.damaged])} contradict each other; "
+              "`rodsweep info FILE --verify` tells in which file", file=sys.stderr)
+    sys.exit(DAMAGED if found.damaged else DIFFER if found.differing else 0)
 
 
 def text(found, pairs, keys, options):
@@ -160,7 +159,7 @@ def as_json(found, pairs, keys, options):
                       "pending": found.pending, "differing": len(found.differing)},
             "columns": [{"column": c.path, "tasks": c.tasks, "values": c.values, "largest": finite(c.largest),
                          "task": c.task} for c in found.columns.values()],
-            "damaged": found.damaged(), "left_out": found.left_out, "cg_ratio": list(ratio_rows(found)),
+            "damaged": found.damaged, "left_out": found.left_out, "cg_ratio": list(ratio_rows(found)),
             "times": [dict(zip(("time", "a_s", "b_s", "ratio", "tasks"), row)) for row in found.times()]}
     if options.tasks:
         made["differing"] = list(task_rows(found))

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import commandline, intervals, measures, score, texts
+from rodsweep.reading import accuracy, commandline, intervals, measures, texts
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -56,9 +56,9 @@ def lines(file, tasks):
     for group in range(rod.max() + 1):
         rows = np.flatnonzero(rod == group)
         best = min(rows, key=lambda row: (step[tasks[row]], name(file, tasks[row]) != "bdf2"))
-        exact = score.frames(file, tasks[best])
+        exact = accuracy.frames(file, tasks[best])
         for row in rows:
-            apart[row] = np.nan if row == best else distance(score.frames(file, tasks[row]), exact)
+            apart[row] = np.nan if row == best else distance(accuracy.frames(file, tasks[row]), exact)
     found = {}
     for which, size in sorted({(name(file, task), step[task]) for task in tasks}, key=lambda key: (key[0], -key[1])):
         rows = [row for row, task in enumerate(tasks) if (name(file, task), step[task]) == (which, size)

@@ -171,6 +171,13 @@ def positions(file, task):
     return file.h5["/trajectories/position_m"][first[0]:first[-1] + count].reshape(len(first), count, 3)
 
 
+def frames(file, task):
+    """{time in ms, rounded: positions [segment, 3]}"""
+    found = positions(file, task)
+    times = file.h5["/trajectories/time_s"][task][:len(found)]
+    return {round(1e3 * time, 3): frame for time, frame in zip(times.tolist(), found)}
+
+
 def _error(file, task, exact):
     apart = np.sqrt((np.square(positions(file, task) - exact).sum(axis=2)).mean(axis=1)).max()
     return float(measures.quotient(apart, np.linalg.norm(np.ptp(exact[0], axis=0))))

@@ -141,7 +141,9 @@ def _guess_keys(file, by):
 
 class Comparison:
     """compared: number of pairs done in both; columns: {path: ColumnDifference}; differing: {index of the pair:
-    paths}; left_out: paths that are missing in one file or have another shape."""
+    paths}; left_out: paths that are missing in one file or have another shape.
+    damaged: tasks of A whose values contradict a checksum, in A or B: those with equal checksums and other values, and, of
+    equal jobs, those with other checksums or row counts and equal values. A task's number is part of its checksum."""
 
     def __init__(self, one, other, pairs):
         self.one, self.other = one, other
@@ -155,21 +157,20 @@ class Comparison:
         for path in _datasets(one) | _datasets(other):
             self._compare(path)
         self.differing = dict(sorted(self.differing.items()))
+        self.damaged = self._damaged()
 
     def outcomes_differ(self):
         return self.one.outcome[self.a] != self.other.outcome[self.b]
 
-    def damaged(self):
-        """Tasks of A whose values contradict a checksum, in A or B: those with equal checksums and other values, and, of
-        equal jobs, those with other checksums or row counts and equal values. A task's number is part of its checksum."""
-        if not (self.one.has("/tasks/checksum") and self.other.has("/tasks/checksum")):
+    def _damaged(self):
+        sums = [file.h5["/tasks/checksum"][:] if file.has("/tasks/checksum") else None for file in (self.one, self.other)]
+        if any(of is None for of in sums):
             return []
-        same_jobs = not key_differences(self.one, self.other)
+        whole = not (key_differences(self.one, self.other) or _datasets(self.one).keys() ^ _datasets(self.other).keys())
         found = []
         for place in np.flatnonzero(self.a == self.b):
             task = int(self.a[place])
-            equal = self.one.h5["/tasks/checksum"][task] == self.other.h5["/tasks/checksum"][task]
-            whole = same_jobs and not (_datasets(self.one).keys() ^ _datasets(self.other).keys())
+            equal = sums[0][task] == sums[1][task]
             differs = int(place) in self.differing or (whole and self._rows(self.one, task) != self._rows(self.other, task))
             if (equal and differs) or (whole and not equal and not differs):
                 found.append(task)

@@ -72,10 +72,10 @@ def runs(file):
         best = of[np.argmin(step[of])]
         if not file.ok[best]:
             raise KeyNotFound(f"{file.path}: the reference of draw {draw}, task {best}, ended with {file.outcome[best]}")
-        exact = frames(file, best)
+        exact = accuracy.frames(file, best)
         for task in of[step[of] > step[best]]:
             setting = Setting(accuracy.way_of(file, task), str(file.parameter(INTEGRATOR).values[task]), float(step[task]))
-            error = distance(frames(file, task), exact) if file.ok[task] else np.inf
+            error = distance(accuracy.frames(file, task), exact) if file.ok[task] else np.inf
             rows.setdefault(setting, []).append((draw, error, *_effort(file, task)))
     if not rows:
         raise KeyNotFound(f"{file.path} has nothing to compare: give {STEP} several values, the smallest of the reference")
@@ -130,13 +130,6 @@ def _entry(setting):
         solve |= {"iterations": way.iterations}
     return {"step_s": setting.step_s, "integrator": setting.integrator, "newton_iterations": way.newton or 1,
             "solve": solve}
-
-
-def frames(file, task):
-    """{time in ms, rounded: positions [segment, 3]}"""
-    positions = accuracy.positions(file, task)
-    times = file.h5["/trajectories/time_s"][task][:len(positions)]
-    return {round(1e3 * time, 3): frame for time, frame in zip(times.tolist(), positions)}
 
 
 def distance(path, exact):
