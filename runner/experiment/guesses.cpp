@@ -7,6 +7,7 @@
 #include "runner/experiment/models.hpp"
 #include "runner/experiment/training_sets.hpp"
 #include "solver/guess/regression_guess.hpp"
+#include "solver/guess/ritz_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
 
@@ -56,6 +57,9 @@ struct Maker {
     return std::make_unique<TotalsGuess>(scene, exact.make(*g.guess));
   }
   Made operator()(const guess::First& g) const { return std::make_unique<FirstGuess>(make(*g.guess)); }
+  Made operator()(const guess::Ritz& g) const {
+    return std::make_unique<RitzGuess>(scene, make(*g.guess), g.size, g.collected, g.lag_steps);
+  }
 };
 
 }  // namespace

@@ -107,6 +107,23 @@ KeyTable<Guess> keys_of_another(const char* help) {
   return table;
 }
 
+KeyTable<guess::Ritz> ritz_keys() {
+  using guess::Ritz;
+  KeyTable<Ritz> table;
+  table.required(guess_key("guess", "the guess to which the part in the span of the Ritz vectors is added"),
+                 &Ritz::guess);
+  table.optional(integer_key("size", "number of Ritz vectors; each costs a product with A").from(1, 200), &Ritz::size);
+  table.optional(integer_key("collected", "residuals of a solve that the next Ritz vectors are combined from")
+                     .from(1, 200)
+                     .labelled_if_changed(),
+                 &Ritz::collected);
+  table.optional(integer_key("lag_steps", "time steps that use the same Ritz vectors; 0: one solve")
+                     .from(0, 1000000)
+                     .labelled_if_changed("lag"),
+                 &Ritz::lag_steps);
+  return table;
+}
+
 /// A kind of guess: its key with its parameters' keys, and how these are read.
 struct Kind {
   Key key;
@@ -155,6 +172,10 @@ const std::vector<Kind>& kinds() {
           "another guess at the first Newton iteration of a step, zero at the others: for networks trained "
           "only on first iterations",
           keys_of_another<guess::First>("the guess for first Newton iterations")),
+      kind<guess::Ritz>(
+          "another guess; CG also projects the approximate eigenvectors that it would find last, recycled from earlier "
+          "solves, out of all residuals (deflated CG)",
+          ritz_keys()),
   };
   return kinds;
 }

@@ -93,12 +93,18 @@ struct Totals : OfAnother {
 struct First : OfAnother {
   static constexpr const char* name = "first";
 };
+struct Ritz : OfAnother {
+  static constexpr const char* name = "ritz";
+  int size = 10;
+  int collected = 20;  ///< residuals of a solve
+  int lag_steps = 50;  ///< time steps that the same vectors serve; 0: one solve
+};
 
 }  // namespace guess
 
 using GuessKind = std::variant<guess::Zero, guess::Previous, guess::Linear, guess::Quadratic, guess::Fischer,
                                guess::Subspace, guess::Deflation, guess::Regression, guess::CopingNet, guess::Knn,
-                               guess::Oracle, guess::Guarded, guess::Totals, guess::First>;
+                               guess::Oracle, guess::Guarded, guess::Totals, guess::First, guess::Ritz>;
 
 struct GuessSpec {
   GuessKind kind;

@@ -3,22 +3,13 @@
 #include <algorithm>
 
 namespace rodsweep {
-namespace {
-
-constexpr double smallest_deflating_pivot = 1e-6;
-
-}  // namespace
 
 SubspaceGuess::SubspaceGuess(const Scene& scene, int newton_iterations, int size, Window window, Use use)
     : newton_iterations_(newton_iterations),
       size_(size),
       window_(window),
       order_(Eigen::VectorXi::Zero(size)),
-      gram_(size, size),
-      coefficients_(VectorX::Zero(size)),
-      equations_(size),
-      deflating_equations_(size, smallest_deflating_pivot),
-      of_residual_(VectorX::Zero(size)) {
+      projection_(size) {
   for (const Rod& rod : scene.rods) {
     const StoredVectors none(6 * rod.joint_count(), size);
     histories_.insert(histories_.end(), static_cast<std::size_t>(newton_iterations), History{none});
@@ -32,49 +23,18 @@ SubspaceGuess::History& SubspaceGuess::history(const SolvePosition& at) {
 
 Proposal SubspaceGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
   History& h = history(at);
-  deflating_ = nullptr;
+  deflating_ = false;
   if (h.last_step != at.step - 1 || h.known == 0) {
     x0.setZero();
     return {};
   }
-  h.solutions.project(system.matrix(), system.rhs(), gram_, coefficients_);
-  for (int i = 0; i < h.known; ++i) order_[i] = by_age(h, i);
-  fill(h, equations_);
-  solve(h, equations_, coefficients_);
-  h.solutions.combine(coefficients_, x0);
+  for (int age = 0; age < h.known; ++age) order_[age] = (h.newest - age + size_) % size_;
+  projection_.project(system.matrix(), system.rhs(), h.solutions, order_, h.known, x0);
   if (!products_.empty()) {
-    deflating_ = &h;
-    fill(h, deflating_equations_);
-    deflating_products_ = &products_[static_cast<std::size_t>(at.rod)];
-    deflating_products_->multiply(system.matrix(), h.solutions);
+    deflating_ = true;
+    projection_.deflate(system.matrix(), h.solutions, products_[static_cast<std::size_t>(at.rod)]);
   }
   return {true, h.known};
-}
-
-void SubspaceGuess::fill(const History& h, NormalEquations& equations) {
-  for (int k = 0; k < h.known; ++k)
-    for (int i = 0; i < h.known; ++i) equations.gram(i, k) = gram_(order_[i], order_[k]);
-  equations.factorise(h.known);
-}
-
-void SubspaceGuess::solve(const History& h, NormalEquations& equations, VectorX& c) {
-  for (int i = 0; i < h.known; ++i) equations.right_side(i) = c[order_[i]];
-  equations.solve();
-  c.setZero();
-  for (int i = 0; i < h.known; ++i) c[order_[i]] = equations.coefficient(i);
-}
-
-void SubspaceGuess::reduce(double* r) {
-  deflating_->solutions.dots(r, of_residual_);
-  solve(*deflating_, deflating_equations_, of_residual_);
-  deflating_products_->subtract(of_residual_, r);
-}
-
-void SubspaceGuess::complete(double* z) {
-  deflating_products_->dots(z, coefficients_);
-  solve(*deflating_, deflating_equations_, coefficients_);
-  coefficients_ -= of_residual_;
-  deflating_->solutions.subtract(coefficients_, z);
 }
 
 void SubspaceGuess::accept(const SolvePosition& at, const VectorX& solution) {

@@ -63,6 +63,8 @@ TEST_CASE("a condensed system has no other norm and no multipliers to project") 
        "must be \"true_residual\""},
       {with("/guesses", R"(["zero", "deflation"])", condensed), "guesses[1]: \"deflation\" ", "\"condensed\"",
        "such as \"subspace\""},
+      {with("/guesses", R"(["zero", {"totals": {"guess": {"ritz": {"guess": "previous"}}}}])", condensed),
+       "guesses[1]: \"ritz\" ", "\"condensed\"", "such as \"subspace\""},
   });
 }
 
@@ -245,7 +247,8 @@ TEST_CASE("guesses that make no guess axis are refused") {
   const std::string zero = "needs \"zero\" in this list", text = "must be a string of 1 to 60 characters on one line";
   const std::string names =
       "must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"fischer\", \"subspace\", \"deflation\", "
-      "\"regression\", \"copingnet\", \"knn\", \"oracle\", \"guarded\", \"totals\", \"first\", or an object such as "
+      "\"regression\", \"copingnet\", \"knn\", \"oracle\", \"guarded\", \"totals\", \"first\", \"ritz\", or an object "
+      "such as "
       "{\"oracle\": {\"error\": 0.1}}";
   check_refused({
       {guesses(R"(["previous"])"), "guesses: ", zero, "for example [\"zero\", \"previous\", \"quadratic\"]"},

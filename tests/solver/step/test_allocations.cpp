@@ -10,6 +10,7 @@
 #include "solver/factor/condensed_factor.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
+#include "solver/guess/ritz_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
 #include "solver/numbers/rotation.hpp"
@@ -194,12 +195,14 @@ TEST_CASE("a step with CG allocates nothing, whatever the guess") {
     if (name == "deflation")
       return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::sliding,
                                              SubspaceGuess::Use::guess_and_deflation);
+    if (name == "ritz")
+      return std::make_unique<RitzGuess>(scene, std::make_unique<ExtrapolationGuess>(scene, 4, 1), 5, 8, 1000);
     if (name == "totals")
       return std::make_unique<TotalsGuess>(scene, std::make_unique<RegressionGuess>(scene, 4, 5, 1e-2));
     return std::make_unique<ZeroGuess>();
   };
   for (const char* guess : {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "subspace",
-                            "deflation", "regression", "totals"}) {
+                            "deflation", "regression", "ritz", "totals"}) {
     INFO(guess);
     Scene scene = loaded_scene();
     CgSolve solve({}, make(guess, scene));

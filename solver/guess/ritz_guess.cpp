@@ -1,0 +1,163 @@
+#include "solver/guess/ritz_guess.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace rodsweep {
+namespace {
+
+/// Eigenvalues of V^T M V, scaled to a unit diagonal, below this belong to combinations that are rounding.
+constexpr double smallest_mass = 1e-8;
+
+}  // namespace
+
+RitzGuess::RitzGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, int size, int collected, int lag_steps)
+    : inner_(std::move(inner)),
+      size_(size),
+      most_collected_(collected),
+      lag_steps_(lag_steps),
+      order_(size),
+      projection_(size),
+      gram_(size + collected, size + collected),
+      mass_(size + collected, size + collected),
+      combinations_(size + collected, size + collected),
+      eigen_(size + collected),
+      dropped_(static_cast<std::size_t>(size + collected)),
+      coefficients_(VectorX::Zero(size + collected)) {
+  std::iota(order_.begin(), order_.end(), 0);
+  for (const Rod& rod : scene.rods) {
+    const int n = 6 * rod.joint_count();
+    const StoredVectors none(n, size);
+    Space space{none, none, 0, StoredVectors(n, size + collected), {}, {}, {}, VectorX::Zero(n), VectorX::Zero(n), 0};
+    space.images.setZero(n, size + collected);
+    space.combined.setZero(n, size);
+    spaces_.push_back(std::move(space));
+    spaces_.back().values.reserve(static_cast<std::size_t>(size));
+  }
+}
+
+Proposal RitzGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
+  Space& space = spaces_[static_cast<std::size_t>(at.rod)];
+  space_ = &space;
+  matrix_ = &system.matrix();
+  collecting_ = at.step >= space.next_step;
+  collected_ = 0;
+  Proposal proposal = inner_->propose(system, at, x0);
+  if (space.known == 0) return proposal;
+
+  proposal.products = proposal.start_products() + space.known;
+  if (!proposal.nonzero) {
+    space.residual = system.rhs();
+  } else if (proposal.residual) {
+    space.residual = *proposal.residual;
+  } else {
+    system.multiply(x0.data(), space.residual.data());
+    space.residual = system.rhs() - space.residual;
+  }
+  projection_.project(*matrix_, space.residual, space.ritz, order_, space.known, space.scratch);
+  projection_.deflate(*matrix_, space.ritz, space.products);
+  projection_.subtract_product(space.residual);
+  x0 += space.scratch;
+  proposal.nonzero = true;
+  proposal.residual = &space.residual;
+  return proposal;
+}
+
+void RitzGuess::reduce(double* r) {
+  Space& space = *space_;
+  if (space.known > 0) projection_.reduce(r);
+  if (!collecting_) return;
+  if (collected_ == most_collected_) rayleigh_ritz(space);
+  space.images.col(size_ + collected_) = Eigen::Map<const VectorX>(r, space.images.rows());
+}
+
+void RitzGuess::complete(double* z) {
+  Space& space = *space_;
+  if (collecting_) {
+    space.scratch = Eigen::Map<const VectorX>(z, space.scratch.size());
+    space.basis.set(size_ + collected_++, space.scratch);
+  }
+  if (space.known > 0) projection_.complete(z);
+}
+
+void RitzGuess::accept(const SolvePosition& at, const VectorX& solution) {
+  inner_->accept(at, solution);
+  if (collected_ == 0) return;
+  Space& space = *space_;
+  rayleigh_ritz(space);
+  space.known = static_cast<int>(space.values.size());
+  for (int k = 0; k < space.known; ++k) {
+    space.scratch = space.combined.col(k);
+    space.ritz.set(k, space.scratch);
+  }
+  space.next_step = at.step + lag_steps_;
+}
+
+void RitzGuess::rayleigh_ritz(Space& space) {
+  space.basis.project(*matrix_, space.residual, gram_, coefficients_);
+  const bool finite = orthonormalise(space);
+  collected_ = 0;
+  if (!finite) return;
+  mass_.noalias() = gram_.lazyProduct(combinations_);
+  gram_.noalias() = combinations_.transpose().lazyProduct(mass_);
+  if (!gram_.allFinite()) return;
+  // Dropped combinations are zero. Their eigenvalue is the largest, so that they come last.
+  const double largest = 2 * gram_.trace();
+  for (int i = 0; i < gram_.rows(); ++i)
+    if (dropped_[static_cast<std::size_t>(i)]) gram_(i, i) = largest;
+  eigen_.compute(gram_);
+  mass_.noalias() = combinations_.lazyProduct(eigen_.eigenvectors());
+  const int spanned = static_cast<int>(std::count(dropped_.begin(), dropped_.end(), false));
+  const int kept = std::min(size_, spanned);
+  space.values.assign(eigen_.eigenvalues().begin(), eigen_.eigenvalues().begin() + kept);
+  restart(space, kept);
+}
+
+bool RitzGuess::orthonormalise(Space& space) {
+  const int known = static_cast<int>(space.values.size());
+  const auto used = [&](int i) { return i < known || (i >= size_ && i < size_ + collected_); };
+  const int most = static_cast<int>(mass_.rows());
+  combinations_.setZero();
+  for (int k = 0; k < most; ++k) {
+    if (!used(k)) continue;
+    space.basis.dots(space.images.col(k).data(), coefficients_);
+    for (int i = 0; i < most; ++i)
+      if (used(i)) combinations_(i, k) = coefficients_[i];
+  }
+  for (int i = 0; i < most; ++i) {
+    const double square = combinations_(i, i);
+    coefficients_[i] = square > 0 ? 1 / std::sqrt(square) : 0;
+  }
+  mass_ = 0.5 * (combinations_ + combinations_.transpose());
+  mass_ = coefficients_.asDiagonal() * mass_ * coefficients_.asDiagonal();
+  if (!mass_.allFinite()) return false;
+  eigen_.compute(mass_);
+  for (int i = 0; i < most; ++i) {
+    const double value = eigen_.eigenvalues()[i];
+    dropped_[static_cast<std::size_t>(i)] = value < smallest_mass;
+    const double scale = value < smallest_mass ? 0 : 1 / std::sqrt(value);
+    combinations_.col(i) = scale * coefficients_.cwiseProduct(eigen_.eigenvectors().col(i));
+  }
+  return true;
+}
+
+/// The first vectors of V become V C, and those of M V become M V C, C the first columns of mass_.
+void RitzGuess::restart(Space& space, int kept) {
+  for (int k = 0; k < kept; ++k) {
+    coefficients_ = mass_.col(k);
+    space.basis.combine(coefficients_, space.scratch);
+    space.combined.col(k) = space.scratch;
+  }
+  for (int k = 0; k < kept; ++k) {
+    space.scratch = space.combined.col(k);
+    space.basis.set(k, space.scratch);
+  }
+  for (int row = 0; row < space.images.rows(); ++row) {
+    coefficients_.noalias() = mass_.transpose().lazyProduct(space.images.row(row).transpose());
+    space.images.row(row).head(kept) = coefficients_.head(kept);
+  }
+}
+
+}  // namespace rodsweep
