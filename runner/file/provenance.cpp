@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
 
 #include "revision.hpp"
 
@@ -31,6 +32,24 @@ std::string hdf5_version() {
   return fmt::format("HDF5 {}.{}.{}", major, minor, release);
 }
 
+/// "AVX-512 on Intel(R) Xeon(R) Gold 6248": the vector instructions of the build, and this machine's processor.
+std::string processor() {
+#if defined(__AVX512F__)
+  const char* instructions = "AVX-512";
+#elif defined(__AVX__)
+  const char* instructions = "AVX";
+#else
+  const char* instructions = "no AVX";
+#endif
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.compare(0, 10, "model name") == 0 && colon != std::string::npos)
+      return fmt::format("{} on {:.80}", instructions, line.substr(colon + 2));
+  }
+  return instructions;
+}
+
 }  // namespace
 
 std::string source_revision() { return built_revision; }
@@ -41,9 +60,9 @@ std::string library_versions() {
 #else
   const char* compiler = "g++ " __VERSION__;
 #endif
-  return fmt::format("rodsweep {}; {}; PETSc {}.{}.{}; {}; Eigen {}.{}.{}; {}", RODSWEEP_VERSION, mpi_version(),
+  return fmt::format("rodsweep {}; {}; PETSc {}.{}.{}; {}; Eigen {}.{}.{}; {}; {}", RODSWEEP_VERSION, mpi_version(),
                      PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR, hdf5_version(),
-                     EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, compiler);
+                     EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, compiler, processor());
 }
 
 std::string host_name() {

@@ -39,7 +39,8 @@ Provenance provenance_of_this_process(std::string user_command);
 /// The git revision of the sources at configuration ("-dirty" with local changes), or "unknown".
 std::string source_revision();
 
-/// rodsweep, Open MPI (or another MPI), PETSc, HDF5, Eigen and the compiler, as "name version" joined by "; ".
+/// rodsweep, Open MPI (or another MPI), PETSc, HDF5, Eigen and the compiler, as "name version", and the processor, joined
+/// by "; ".
 std::string library_versions();
 
 std::string host_name();

@@ -27,7 +27,7 @@ constexpr std::array<RunColumn, 14> run_columns{{
     {"/runs/revision", [](RunRow& run) -> std::string& { return run.provenance.revision; }, 64,
      "git revision of the program"},
     {"/runs/versions", [](RunRow& run) -> std::string& { return run.provenance.versions; }, 256,
-     "program, libraries and compiler"},
+     "program, libraries, compiler, vector instructions and processor"},
     {"/runs/petsc_options", [](RunRow& run) -> std::string& { return run.provenance.petsc_options; }, 1024,
      "PETSC_OPTIONS of the environment"},
     {"/runs/source", [](RunRow& run) -> std::string& { return run.source; }, 512,
