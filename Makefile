@@ -35,7 +35,7 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   lattice_swing lattice_preconditioners lattice_impact lattice_cells lattice_closed lattice_impact_closed \
   lattice_work_precision net_gusts net_closed \
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
-score_scenes = bending_rod helix tree net
+score_scenes = bending_rod helix tree forest net lattice falling_rods knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
 .PHONY: help configure build demo report score studies variants ablation pictures test test-long test-cluster test-arm bench sanitize fuzz schema pages docs format format-check tidy install uninstall clean

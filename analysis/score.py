@@ -4,20 +4,24 @@
 Each NAME_tuning.h5 is a closed-loop sweep over integrators, steps, Newton iterations, methods, preconditioners, tolerances
 and guesses. --jobs writes NAME_test.json beside it: the settings that are cheapest there, on other draws. Once
 NAME_test.h5 is there, the tables have for every scene and error the wall time of a simulated second with the cheapest of
-all settings, of the direct solve, of CG from zero, from a classical and from a learned guess, of CG with Jacobi (the
-setting of Shao et al. 2021), and of Gauss-Seidel. Times are medians over test draws; "÷ cheapest" is the median of the
-quotients with the cheapest of all, with its 95 % bootstrap interval. rodsweep/reading/score.py defines error and time.
-"-": no setting of this kind reached the error on the tuning draws. An error in parentheses is above its level on the test
-draws.
+all settings, of the direct solve, of CG from zero, from a classical and from a learned guess, of CG with a learned
+preconditioner, of CG with Jacobi (the setting of Shao et al. 2021), and of Gauss-Seidel. rodsweep/reading/score.py
+defines error and time.
+
+Times are medians over test draws, of learned settings also over trainings (the models seeds/NAME-2.h5, ... beside
+NAME.h5). "÷ cheapest" is the median of the quotients with the cheapest of all, with its 95 % bootstrap interval; of
+learned settings that contains the intervals of all trainings. The last table has the time of the trainings. "-": no setting of this kind reached the error on the
+tuning draws. An error in parentheses is above its level on the test draws.
 """
 
 import argparse
 import json
 import os
+import re
 
 import numpy as np
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import commandline, intervals, score, texts
+from rodsweep.reading import commandline, intervals, modelfile, score, texts
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -40,33 +44,33 @@ def arguments():
 
 def main():
     options = arguments()
-    scenes = {}
+    scenes, models = {}, {}
     for path in options.files:
         if not path.endswith(ENDING):
             raise KeyNotFound(f"{path}: the name of a tuning file ends in {ENDING}")
         with SweepFile(path) as file:
-            found, job, source = score.runs(file), file.job(), file.runs()[-1]["job"]
+            found, job, labels, source = score.runs(file), file.job(), file.guesses, file.runs()[-1]["job"]
             title = str(file.scene_types()[0]).replace("_", " ")
         if options.jobs:
-            write_job(path.replace(ENDING, "_test.json"), job, os.path.dirname(source), score.chosen(found), options.samples)
+            folder = os.path.dirname(source)
+            made = score.test_job(job, labels, score.chosen(found).values(), options.samples, folder)
+            write_job(path.replace(ENDING, "_test.json"), made, folder)
         else:
             with SweepFile(path.replace(ENDING, "_test.h5")) as test:
                 scenes[title] = rows_of(score.chosen(found), score.runs(test))
+                models |= models_of(test)
     if scenes:
-        print("\n".join(table(scenes)) + "\n\n")
+        print("\n".join([*table(scenes), "", *trainings(models)]) + "\n\n")
         folder = options.output or os.path.join(os.path.dirname(options.files[0]), "figures")
         width = int(options.width)
         print("\n".join(figure(scenes, width).save(folder, "score", options.format, not options.no_caption)))
 
 
-def write_job(path, job, folder, chosen, samples):
-    """`folder` is that of `job`, to which its paths are relative."""
-    made = score.test_job(job, chosen.values(), samples)
-    for guess in made.get("guesses", []):
-        if isinstance(guess, dict) and "copingnet" in guess:
-            model = os.path.join(folder, guess["copingnet"]["model"])
-            guess["copingnet"]["model"] = os.path.relpath(model, os.path.dirname(os.path.abspath(path)))
-    text = json.dumps(made, indent=1) + "\n"
+def write_job(path, job, folder):
+    """`folder` is the one to which the paths of `job` are relative."""
+    text = json.dumps(job, indent=1) + "\n"
+    here = os.path.relpath(folder, os.path.dirname(os.path.abspath(path)))
+    text = re.sub(r'("model": )("[^"]+")', lambda found: found[1] + moved(found[2], here), text)
     if os.path.exists(path):
         with open(path, encoding="utf-8") as file:
             if file.read() != text:
@@ -76,20 +80,45 @@ def write_job(path, job, folder, chosen, samples):
     print(path)
 
 
+def moved(path, folder):
+    """A path in JSON that was relative to a folder."""
+    return json.dumps(os.path.normpath(os.path.join(folder, json.loads(path))))
+
+
 def rows_of(chosen, runs):
-    """{(level, answer): (Setting, Runs, Estimate of the time over that of the cheapest)}"""
+    """{(level, answer): (Setting, its Runs by training, Estimate of their time over that of the cheapest)}"""
     made = {}
     for (level, answer), setting in chosen.items():
         best = chosen[level, score.ALL]
-        if setting in runs and best in runs:
-            made[level, answer] = setting, runs[setting], score.factor(runs[setting], runs[best])
+        of = score.trainings(setting, runs)
+        if of and best in runs:
+            made[level, answer] = setting, of, score.factor(of, runs[best])
     return made
+
+
+def models_of(file):
+    """{name: path} of a job's models."""
+    folder = os.path.dirname(file.runs()[-1]["job"])
+    paths = re.findall(r'"model": "([^"]+)"', json.dumps(file.job()))
+    return {os.path.basename(path).removesuffix(".h5"): os.path.join(folder, path) for path in paths}
+
+
+def trainings(models):
+    rows = [["model", "minutes of training", "epochs"]]
+    for name, path in sorted(models.items()):
+        if os.path.exists(path):
+            of = modelfile.read(path)
+            rows.append([name, texts.short_text(of.seconds / 60, 2), str(len(of.epochs))])
+    return texts.aligned(rows) if len(rows) > 1 else []
 
 
 def table(scenes):
     lines = []
     for title, found in scenes.items():
         for level in score.LEVELS:
+            if not any(of == level for of, _ in found):
+                lines += [f"{title}, error {100 * level:g} %: reached by no setting on the tuning draws", ""]
+                continue
             rows = [[f"{title}, error {100 * level:g} %", "ms/s", "÷ cheapest", "95 %", "products/s", "error there", "setting"]]
             rows += [[answer, *cells(found.get((level, answer)), level)] for answer in score.ANSWERS]
             lines += [*texts.aligned(rows), ""]
@@ -99,11 +128,16 @@ def table(scenes):
 def cells(entry, level):
     if not entry:
         return ["-"] * 6
-    setting, runs, factor = entry
-    error = float(np.median(runs.error))
-    said = texts.short_text(100 * error, 2) + " %"
-    return [texts.short_text(1e3 * float(np.median(runs.time_s)), 3), texts.short_text(float(factor.value), 3),
-            interval(factor), texts.short_text(float(np.median(runs.products)), 3),
+    setting, of, factor = entry
+    time_s, products, error = (np.median([np.median(getattr(runs, name)) for runs in of])
+                               for name in ("time_s", "products", "error"))
+    failed = sum(np.count_nonzero(~np.isfinite(runs.error)) for runs in of)
+    if failed:
+        error, said = np.inf, f"{failed} of {sum(len(runs.error) for runs in of)} failed"
+    else:
+        said = texts.short_text(100 * float(error), 2) + " %"
+    return [texts.short_text(1e3 * float(time_s), 3), texts.short_text(float(factor.value), 3),
+            interval(factor), texts.short_text(float(products), 3),
             said if error <= level else f"({said})", setting.text()]
 
 
@@ -122,8 +156,7 @@ def figure(scenes, width_mm):
     for column, (axes, (title, found)) in enumerate(zip(page.axes[0], scenes.items())):
         for shift, (answer, look) in enumerate(looks.items()):
             levels = [level for level in score.LEVELS if (level, answer) in found]
-            times = [intervals.median(1e3 * found[level, answer][1].time_s, found[level, answer][1].draws)
-                     for level in levels]
+            times = [intervals.median(1e3 * runs.time_s, runs.draws) for runs in (found[level, answer][1][0] for level in levels)]
             x = [level * 1.08 ** (shift - 2) for level in levels]
             y, low, high = (np.array([float(getattr(time, part)) for time in times]) for part in ("value", "low", "high"))
             style.errorbar(axes, x, y, yerr=style.whiskers(y, low, high), **look.line(), linewidth=0.9, markersize=2.8,

@@ -23,7 +23,7 @@ copingnet factors_64,copingnet rods 3 to 0.01" >/dev/null
   exit
 fi
 if [ "${2:-}" = score ]; then
-  /usr/bin/python3 analysis/score.py "$results"/score/{bending_rod,helix,tree,net}_tuning.h5 -o $out >$out/score.txt
+  /usr/bin/python3 analysis/score.py "$results"/score/{bending_rod,helix,tree,forest,net,lattice,falling_rods,knot}_tuning.h5 -o $out >$out/score.txt
   exit
 fi
 if [ "${2:-}" = ablation ]; then

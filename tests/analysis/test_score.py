@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -27,6 +28,7 @@ def setting(guess="", preconditioner="jacobi", step_s=0.01, method="cg"):
 
 class Choice(unittest.TestCase):
     FOUND = {setting(method="direct"): runs(0.05, 3), setting("zero"): runs(0.05, 5),
+             setting("previous", "learned rods"): runs(0.05, 6),
              setting("zero", "block_icc"): runs(0.005, 4), setting("previous"): runs(0.05, 4.5),
              setting("copingnet rods"): runs(0.05, 2), setting("previous", "icc"): runs(np.inf, 0.1),
              setting("copingnet rods", step_s=0.005): runs(0.008, [1, 2, 9, 9, 9])}
@@ -37,6 +39,7 @@ class Choice(unittest.TestCase):
             "cheapest of all": setting("copingnet rods"), "direct solve": setting(method="direct"), "Gauss-Seidel": None,
             "CG from zero": setting("zero", "block_icc"),
             "CG, classical guess": setting("previous"), "CG, learned guess": setting("copingnet rods"),
+            "CG, learned preconditioner": setting("previous", "learned rods"),
             "CG, Jacobi": setting("copingnet rods")})
         self.assertEqual(best[0.01, "cheapest of all"], setting("zero", "block_icc"))
         self.assertEqual(best[0.01, "CG, Jacobi"], setting("copingnet rods", step_s=0.005))
@@ -46,9 +49,16 @@ class Choice(unittest.TestCase):
     def test_a_quotient_is_the_median_over_draws_that_both_have(self):
         slow = score.Runs(np.arange(1, 7), np.zeros(6), 2.0 * np.arange(1, 7), np.ones(6))
         base = score.Runs(np.arange(6), np.zeros(6), np.arange(6) + 1.0, np.ones(6))
-        factor = score.factor(slow, base)
+        factor = score.factor([slow], base)
         self.assertAlmostEqual(float(factor.value), np.median(2 * np.arange(1, 6) / np.arange(2, 7)))
         self.assertEqual(int(factor.count), 5)
+
+    def test_learned_settings_have_the_median_of_their_trainings_and_the_interval_of_all(self):
+        learned, base = setting("copingnet rods 5 lag 8"), runs(0, [1, 1, 1, 1, 1])
+        found = {setting(f"copingnet rods{seed} 5 lag 8"): runs(0, [time] * 5) for seed, time in (("", 2), ("-2", 5), ("-3", 4))}
+        found |= {setting("copingnet rods-large 5 lag 8"): base, setting("copingnet rods-2 5 lag 9"): base}
+        factor = score.factor(score.trainings(learned, found), base)
+        self.assertEqual([float(factor.value), float(factor.low), float(factor.high)], [4, 2, 5])
 
 
 class Files(unittest.TestCase):
@@ -56,6 +66,10 @@ class Files(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
+        models = os.path.join(cls.folder.name, "models")
+        os.makedirs(os.path.join(models, "seeds"))
+        for name in ("rods.h5", "seeds/rods-2.h5", "seeds/rods-large-2.h5"):
+            shutil.copy(MODEL, os.path.join(models, name))
         steps = {"grid": [0.02, 0.01]}
         job = {"name": "rod_tuning", "kind": "sweep", "seed": 1, "samples": 2, "evaluation": "closed_loop",
                "scene": {"type": "bending_rod", "segments": 6, "length_m": {"uniform": [1, 2]}, "radius_m": 0.05,
@@ -64,8 +78,9 @@ class Files(unittest.TestCase):
                         "integrator": {"zip": ["bdf2", {"grid": ["euler", "bdf2"]}, "bdf2"]},
                         "newton_iterations": {"zip": [20, 1, {"grid": [1, 2]}]}},
                "solve": {"zip": [{"method": "direct"}, {"method": "direct"},
-                                 {"preconditioner": {"grid": ["jacobi", "block_icc"]}, "tolerance": 1e-2}]},
-               "guesses": ["zero", "previous", {"copingnet": {"model": MODEL}}],
+                                 {"preconditioner": {"grid": ["jacobi", "block_icc", "learned"]}, "tolerance": 1e-2,
+                                  "max_iterations": 500, "learned_preconditioner": {"model": "models/rods.h5"}}]},
+               "guesses": ["zero", "previous", "linear", {"copingnet": {"model": "models/rods.h5"}}],
                "record": {"solves": "summary", "norms": "none", "trajectory_every": 4}}
         cls.tuning, cls.test = (os.path.join(cls.folder.name, f"rod_{which}.h5") for which in ("tuning", "test"))
         cls.run_job(job, cls.tuning)
@@ -81,7 +96,7 @@ class Files(unittest.TestCase):
     def test_numbers_are_those_of_the_rows(self):
         with SweepFile(self.tuning) as file:
             found = score.runs(file)
-            self.assertEqual(len(found), 4 + 2 * 2 * 2 * 3)
+            self.assertEqual(len(found), 4 + 2 * 2 * 3 * 4)
             rows, step = file.parameter("time.step_s").values, file.parameter("time.integrator").values
             direct = found[score.Setting(Way("direct", 1), "euler", 0.02)]
             task = next(task for task in range(file.task_count) if rows[task] == 0.02 and step[task] == "euler"
@@ -101,12 +116,20 @@ class Files(unittest.TestCase):
             self.assertEqual(len(np.unique(test.sample)), 10)
             lengths = [set(file.parameter("scene.length_m").values.tolist()) for file in (tuning, test)]
             self.assertFalse(lengths[0] & lengths[1])
-            self.assertLessEqual(set(score.chosen(score.runs(tuning)).values()), set(score.runs(test)))
+            found, chosen = score.runs(test), score.chosen(score.runs(tuning))
+            self.assertLessEqual(set(chosen.values()), set(found))
+            self.assertEqual({setting.text(): setting.solve for setting in chosen.values()},
+                             {setting.text(): setting.solve for setting in found if setting in set(chosen.values())})
+            self.assertEqual(chosen[0.1, "CG from zero"].solve["max_iterations"], 500)
+            for answer in ("CG, learned guess", "CG, learned preconditioner"):
+                self.assertEqual(len(score.trainings(chosen[0.1, answer], found)), 2, answer)
         done = run("score.py", self.tuning, "-o", self.folder.name, "--format", "png")
         self.assertEqual(done.code, 0, done.stderr)
         blocks = [block.splitlines() for block in done.stdout.split("\n\n\n")[0].split("\n\n")]
-        self.assertEqual([block[0].split("  ")[0] for block in blocks],
-                         [f"bending rod, error {level} %" for level in ("10", "1", "0.1", "0.01")])
+        self.assertEqual([block[0].split("  ")[0] for block in blocks], [
+            *(f"bending rod, error {level} %" for level in ("10", "1", "0.1")),
+            "bending rod, error 0.01 %: reached by no setting on the tuning draws", "model"])
+        self.assertRegex(blocks[-1][1], r"^rods +[\d.]+ +120$")
         self.assertRegex(blocks[0][1], r"cheapest of all +[\d.]+ +1 +1 to 1 ")
         self.assertEqual([line.split("  ")[0] for line in blocks[0][1:]], list(score.ANSWERS))
         self.assertIn(os.path.join(self.folder.name, "score.png"), done.stdout)

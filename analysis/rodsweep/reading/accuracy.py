@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rodsweep.reading import intervals, measures, texts
+from rodsweep.reading import combinations, intervals, measures, texts
 from rodsweep.reading.errors import KeyNotFound
 
 REST, ASSEMBLY, DIRECT, GUESS, CG = ("/timing/steps/rest_s", *(f"/timing/solves/{part}_s" for part in
@@ -139,7 +139,7 @@ def way_of(file, task):
     newton = int(value(NEWTON))
     if method == "cg":
         forced = "solve.forcing" in file.parameters and value("solve.forcing") == "eisenstat_walker"
-        return Way(method, newton, 0, float(value("solve.tolerance")), str(value("solve.preconditioner")),
+        return Way(method, newton, 0, float(value("solve.tolerance")), combinations.preconditioner_text(file, task),
                    file.guesses[file.own_guess[task]], forced)
     return Way(str(measures.without_guess(file, [task])[0]), newton)
 

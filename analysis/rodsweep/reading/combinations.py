@@ -6,6 +6,7 @@ guess and preconditioner set-up, or in a closed loop of a whole step. Kinds of g
 learned ones, and oracles, which know the solution. A paired oracle's own time is not counted: it is a free guess.
 """
 
+import os
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from rodsweep.reading import groups, intervals, measures, timings
 
 PRECONDITIONER = "solve.preconditioner"
+MODEL = "solve.learned_preconditioner.model"
 SETTINGS = {"solve.fill_levels": "levels", "solve.lag_steps": "lag"}
 AXES = (PRECONDITIONER, *SETTINGS)
 WITH_LEVELS = ("block_icc", "condensed")
@@ -146,12 +148,18 @@ class _Measured:
 
 
 def solver_text(file, task):
-    """A preconditioner with its settings that the job sweeps."""
+    """preconditioner_text() with spaces."""
+    return preconditioner_text(file, task).replace("_", " ")
+
+
+def preconditioner_text(file, task):
+    """A preconditioner with its settings that the job sweeps, and the name of its model."""
     name_of = file.parameters[PRECONDITIONER].text(task)
     swept = [f"{name} {file.parameters[key].text(task)}" for key, name in SETTINGS.items()
              if key in file.parameters and file.parameters[key].swept and file.parameters[key].applies()[task]
              and (name_of in WITH_LEVELS if name == "levels" else file.parameters[key].values[task] > 0)]
-    return " ".join([name_of.replace("_", " "), *swept])
+    model = [os.path.basename(str(file.parameters[MODEL].values[task])).removesuffix(".h5")] if name_of == "learned" else []
+    return " ".join([name_of, *model, *swept])
 
 
 def speedup(slower, faster, draws):
