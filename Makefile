@@ -27,14 +27,11 @@ job = $$(ls jobs/$(1).json jobs/*/$(1).json 2>/dev/null)
 # $(call study,NAME): runs a job; continues it if it was stopped, does nothing if it is done.
 study = [ -e results/$(1).h5 ] && resume=--resume || resume=; \
   cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run $(call job,$(1)) -o results/$(1).h5 $$resume </dev/null || [ $$? = 3 ]
-studies = spatial_bending spatial_helix newton stiffness step_size long_term bending_data helix_data \
-  temporal_bending temporal_helix side_by_side learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
-  generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
-  solvers work_precision integrators balance balance_scenes tree_wind forest tree_long_term \
-  learned_rods learned_rods_length learned_rods_closed learned_rods_preconditioned \
-  lattice_swing lattice_preconditioners lattice_impact lattice_cells lattice_closed lattice_impact_closed \
-  lattice_work_precision net_gusts net_closed \
-  collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
+studies = bending_data helix_data spatial_bending spatial_helix temporal_bending temporal_helix side_by_side \
+  long_term_learned learned_rods learned_rods_length learned_rods_closed \
+  generalisation_stiffness generalisation_length generalisation_step \
+  tree_wind collision_falling knot integrators balance balance_scenes \
+  lattice_swing lattice_preconditioners lattice_closed net_gusts net_closed
 score_scenes = bending_rod helix tree forest net lattice falling_rods knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 

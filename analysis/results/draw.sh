@@ -34,69 +34,37 @@ if [ "${2:-}" = ablation ]; then
   figures long_term ablation_long_term --log-time >$out/ablation_long_term.txt
   exit
 fi
-for study in spatial_bending spatial_helix learned_bending learned_helix; do
-  figures spatial $study
+jacobi="--select solve.preconditioner=jacobi"
+for study in spatial_bending spatial_helix; do
+  figures spatial $study $jacobi
   table summary $study
 done
 pretrained=network/pretrained
 /usr/bin/python3 analysis/loss.py $pretrained/{rods,rods-large,bending-paper,bending-paper-best,helix-paper,helix-paper-best}.h5 -o $out >$out/pretrained.txt
-figures spatial tree_wind --x scene.depth
-table summary tree_wind --by scene.depth
-table summary forest
-figures spatial knot --x scene.contact
-for study in collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot; do
-  table summary $study --by scene.contact.friction
-done
-figures long_term tree_long_term >"$out/tree_long_term.txt"
-for study in deck_bending deck_helix; do
-  figures spatial $study
-  table summary $study
-done
 for study in temporal_bending temporal_helix; do
   figures temporal $study --tolerance 1e-2,1e-3,1e-4
   table summary $study
 done
+figures side_by_side side_by_side --log-time >"$out/side_by_side.txt"
+figures long_term long_term_learned --log-time >"$out/long_term_learned.txt"
+table summary learned_rods
+for scene in bending_rod helix; do figures front learned_rods --scene $scene --tolerance 1e-2,1e-3,1e-4; done
+{ echo; script summary learned_rods --newton all; echo; script summary learned_rods --scene ring --by scene.clamp; } >>"$out/learned_rods.txt"
+table summary learned_rods_length --by scene.segments
+figures spatial learned_rods_length && rm $out/learned_rods_length-{speedup,time}.png
+table summary learned_rods_closed --by scene.segments --newton all
 for by in stiffness:scene.youngs_modulus_pa length:scene.length_m step:time.step_s; do
   study=generalisation_${by%%:*}
   figures spatial "$study" --x "${by#*:}"
   table summary "$study" --by "${by#*:}"
 done
-table summary learned_closed_loop
-table summary learned_rods
-for scene in bending_rod helix; do figures front learned_rods --scene $scene --tolerance 1e-2,1e-3,1e-4; done
-table summary learned_rods_length --by scene.segments
-figures spatial learned_rods_length && rm $out/learned_rods_length-{speedup,time}.png
-table summary learned_rods_closed --by scene.segments --newton all
-table summary learned_rods_preconditioned --by scene.segments --newton all
-for study in learned_closed_loop learned_rods; do
-  echo >>"$out/$study.txt"
-  script summary "$study" --newton all >>"$out/$study.txt"
-done
-{ echo; script summary learned_rods --scene ring --by scene.clamp; } >>"$out/learned_rods.txt"
-for scene in bending_rod helix; do
-  figures spatial guarded --scene $scene --x 'guesses[4].guarded.threshold' \
-    --guess "zero,quadratic,copingnet rods-large,guarded quadratic,guarded rods-large"
-done
-table summary guarded --by 'guesses[4].guarded.threshold'
-figures heatmap step_size --x time.step_s --y tolerance
-figures heatmap step_size --x time.step_s --y solve.preconditioner --measure iterations
-figures heatmap stiffness --x scene.youngs_modulus_pa --y scene.segments
-figures heatmap stiffness --x scene.youngs_modulus_pa --y scene.segments --measure speedup-guess-cg
-table summary step_size --by time.step_s
-table summary stiffness --by scene.youngs_modulus_pa
-for study in lattice_swing lattice_preconditioners lattice_impact lattice_closed lattice_impact_closed; do
-  figures combinations $study >"$out/$study.txt"
-done
-figures combinations lattice_cells --x scene.cell >"$out/lattice_cells.txt"
-for study in net_gusts net_closed; do figures combinations $study --x scene.rows >"$out/$study.txt"; done
-rm $out/{lattice_preconditioners,lattice_impact,lattice_cells,lattice_closed,lattice_impact_closed,net_closed}-combinations.png
-figures work_precision lattice_work_precision >"$out/lattice_work_precision.txt"
-figures newton newton >"$out/newton.txt"
-figures solvers solvers >"$out/solvers.txt"
-figures work_precision work_precision >"$out/work_precision.txt"
+figures spatial tree_wind --x scene.depth $jacobi
+table summary tree_wind --by scene.depth
+figures spatial knot --x scene.contact $jacobi
+for study in collision_falling knot; do table summary $study --by scene.contact.friction; done
 figures integrators integrators --energy-step 0.01 >$out/integrators.txt
 figures balance balance >"$out/balance.txt"
 script balance balance_scenes >"$out/balance_scenes.txt"
-figures long_term long_term >"$out/long_term.txt"
-figures side_by_side side_by_side --log-time >"$out/side_by_side.txt"
-figures long_term long_term_learned --log-time >"$out/long_term_learned.txt"
+for study in lattice_swing lattice_preconditioners lattice_closed; do figures combinations $study >"$out/$study.txt"; done
+for study in net_gusts net_closed; do figures combinations $study --x scene.rows >"$out/$study.txt"; done
+rm $out/{lattice_preconditioners,lattice_closed,net_closed}-combinations.png
