@@ -5,10 +5,13 @@ cd "$(dirname "$0")/../.."
 results=${1:?usage: analysis/results/draw.sh RESULTS [variants|ablation|score]}
 out=analysis/results
 
-script() { /usr/bin/python3 "analysis/$1.py" "$results/$2.h5" "${@:3}"; }
+declare -A drawn
+script() { drawn[$2]=1; /usr/bin/python3 "analysis/$1.py" "$results/$2.h5" "${@:3}"; }
 figures() { script "$@" -o $out; }
 table() { script "$@" >"$out/$2.txt"; }
-trap 'sed -i "/\.\(png\|pdf\)\$/d" $out/*.txt; rm -f $out/*.pdf' EXIT  # no paths of figures, no PDFs
+clean() { sed -i "/\.\(png\|pdf\)\$/d" $out/*.txt; rm -f $out/*.pdf; }  # no paths of figures, no PDFs
+trap clean EXIT
+origins() { $out/origins.py "${@/#/$results/}"; }  # of what was drawn
 
 if [ "${2:-}" = variants ]; then
   for family in rods lattices; do
@@ -20,10 +23,13 @@ if [ "${2:-}" = variants ]; then
     figures front rods_front --scene $scene --tolerance 1e-2,1e-3 --guess "zero,subspace 10,regression 6,copingnet factors_16,\
 copingnet factors_64,copingnet rods 3 to 0.01" >/dev/null
   done
+  origins "${!drawn[@]/%/.h5}"
   exit
 fi
 if [ "${2:-}" = score ]; then
-  /usr/bin/python3 analysis/score.py "$results"/score/{bending_rod,helix,tree,forest,net,lattice,falling_rods,knot}_tuning.h5 -o $out >$out/score.txt
+  files=(score/{bending_rod,helix,tree,forest,net,lattice,falling_rods,knot}_tuning.h5)
+  /usr/bin/python3 analysis/score.py "${files[@]/#/$results/}" -o $out >$out/score.txt
+  origins "${files[@]}" "${files[@]/_tuning/_test}"
   exit
 fi
 if [ "${2:-}" = ablation ]; then
@@ -32,6 +38,7 @@ if [ "${2:-}" = ablation ]; then
     table summary ablation_${scene}_step --by time.step_s
   done
   figures long_term ablation_long_term --log-time >$out/ablation_long_term.txt
+  origins "${!drawn[@]/%/.h5}"
   exit
 fi
 jacobi="--select solve.preconditioner=jacobi"
@@ -68,3 +75,4 @@ script balance balance_scenes >"$out/balance_scenes.txt"
 for study in lattice_swing lattice_preconditioners lattice_closed; do figures combinations $study >"$out/$study.txt"; done
 for study in net_gusts net_closed; do figures combinations $study --x scene.rows >"$out/$study.txt"; done
 rm $out/{lattice_preconditioners,lattice_closed,net_closed}-combinations.png
+origins "${!drawn[@]/%/.h5}"

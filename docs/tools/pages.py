@@ -35,6 +35,8 @@ import jinja2
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 TABLES = os.path.join(ROOT, "analysis", "results")
+sys.path.insert(0, TABLES)
+import origins  # noqa: E402
 NUMBER = re.compile(r"[−-]?(?:\d[\d,]*\.?\d*|\.\d+)(?:e[+−-]?\d+)?")
 NAMED = re.compile(r"@<<(.*?)>>")
 BAR = re.compile(r"(?<!\\)\|")
@@ -46,14 +48,17 @@ class NotFound(Exception):
 
 
 class Tables:
-    """The tables of a folder, each read once."""
+    """The tables of a folder, each read once. Those that are older than their job or models are not quoted."""
 
     def __init__(self, folder):
         self.folder, self.lines = folder, {}
+        self.older = origins.older(origins.read(os.path.join(folder, "origins.txt")))
 
     def cell(self, address, style):
         """The number at an address, in a style."""
         name, section, block, row, column, *rest = [part.strip() for part in address.split(";")]
+        if name in self.older:
+            raise NotFound(f"{name}.txt is not quoted: {self.older[name]}; run the study and draw it again: {address!r}")
         if name not in self.lines:
             path = os.path.join(self.folder, f"{name}.txt")
             if not os.path.exists(path):

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """docs/tools/pages.py: numbers of tables in pages; the pages of this repository are current."""
 
+import json
 import os
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import unittest
 TOOLS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "tools")
 sys.path.insert(0, TOOLS)
 import pages  # noqa: E402
+import origins  # noqa: E402
 
 TABLE = """results/x.h5: job x
 
@@ -56,6 +58,21 @@ class Pages(unittest.TestCase):
         with self.assertRaises(pages.NotFound) as refused:
             self.page(template)
         return str(refused.exception)
+
+    def test_a_table_that_is_older_than_its_job_or_models_is_not_quoted(self):
+        with open(origins.find_job("tree_wind"), encoding="utf-8") as file:
+            job = json.load(file)
+        folder = os.path.dirname(origins.find_job("tree_wind"))
+        now = {"job": origins.job_checksum({**job, "description": "Another."}), "models": origins.models_checksum(job, folder)}
+        self.write("tree_wind.txt", TABLE)
+        quote = "{{ cell('tree_wind; CG ratio; Bending rod, n = 300; last 9; 1e-2', '.00') }}"
+        for changed, why in ({}, None), ({"job": "0"}, "tree_wind.json has changed since"), ({"models": "0"}, "a model of"):
+            row = {**dict.fromkeys(origins.COLUMNS, "x"), "study": "tree_wind", **now, **changed}
+            self.write("origins.txt", "  ".join(origins.COLUMNS) + "\n" + "  ".join(row.values()) + "\n")
+            if why:
+                self.assertIn(why, self.refused(quote))
+            else:
+                self.assertIn(".10", self.page(quote))
 
     def test_numbers_have_the_style_that_is_asked_for(self):
         for address, style, text in (("CG ratio; Bending rod; last 9; 1e-2", ".00", ".10"),

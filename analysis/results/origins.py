@@ -1,0 +1,136 @@
+#!/usr/bin/python3
+"""What made the tables of this folder: origins.txt, one row per results file.
+
+    analysis/results/origins.py FILE...    adds or replaces the rows of results files (draw.sh calls it)
+    analysis/results/origins.py            names the tables that are older than their job or models; exit code 1 if any is
+
+A row has the study's name, the revision of the program, the day of its first run, its minutes, instructions and
+processor, its tasks and how many of them failed, the share of solves that were left out of times because something
+interrupted them, and checksums of the job and its models. The job's checksum ignores name and description. A table is
+older than its job or models if they have other checksums now; docs/tools/pages.py quotes no number of such a table.
+"""
+
+import hashlib
+import json
+import os
+import re
+import sys
+from datetime import datetime
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.join(HERE, "..", "..")
+ORIGINS = os.path.join(HERE, "origins.txt")
+COLUMNS = ("study", "revision", "day", "minutes", "processor", "tasks", "failed", "disturbed", "job", "models")
+
+
+def job_checksum(job):
+    """Of a parsed job."""
+    meant = {key: value for key, value in job.items() if key not in ("$schema", "name", "description")}
+    return hashlib.sha256(json.dumps(meant, sort_keys=True).encode()).hexdigest()[:12]
+
+
+def models_checksum(job, folder):
+    """Of the models of a parsed job, whose paths start at a folder; "-" without models."""
+    paths = sorted(set(re.findall(r'"model": "([^"]+)"', json.dumps(job))))
+    digest = hashlib.sha256()
+    for path in paths:
+        with open(os.path.join(folder, path), "rb") as file:
+            digest.update(file.read())
+    return digest.hexdigest()[:12] if paths else "-"
+
+
+def read(path=ORIGINS):
+    """{study: {column: text}}; empty without the file."""
+    if not os.path.exists(path):
+        return {}
+    with open(path, encoding="utf-8") as file:
+        rows = [re.split(r" {2,}", line.strip()) for line in file if line.strip()]
+    return {row[0]: dict(zip(rows[0], row)) for row in rows[1:]}
+
+
+def find_job(name):
+    """Path of a job that comes along, or None."""
+    for folder, _, files in os.walk(os.path.join(ROOT, "jobs")):
+        if f"{name}.json" in files:
+            return os.path.join(folder, f"{name}.json")
+    return None
+
+
+def older(origins):
+    """{study: why} of those that are older than their job or models."""
+    found = {}
+    for name, row in origins.items():
+        path = find_job(name)
+        if path is None:
+            continue    # made by a script from another job
+        with open(path, encoding="utf-8") as file:
+            job = json.load(file)
+        where = os.path.relpath(path, ROOT)
+        try:
+            models = models_checksum(job, os.path.dirname(path))
+        except FileNotFoundError as missing:
+            found[name] = f"{where} has a model that does not exist: {missing.filename}"
+            continue
+        if job_checksum(job) != row["job"]:
+            found[name] = f"{where} has changed since"
+        elif models != row["models"]:
+            found[name] = f"a model of {where} has changed since"
+    return found
+
+
+def row_of(path):
+    sys.path.insert(0, os.path.join(ROOT, "analysis"))
+    from rodsweep.reading import remarks    # not needed to read origins.txt
+    from rodsweep.reading.sweepfile import SweepFile
+    with SweepFile(path) as file:
+        job, runs = file.job(), file.runs()
+        seconds = sum((moment(run["end"] or run["begin"]) - moment(run["begin"])).total_seconds() for run in runs)
+        processors = dict.fromkeys(run["versions"].split("; ")[-1] for run in runs)
+        made = [job["name"], remarks.revisions(file), runs[0]["begin"][:10],
+                f"{seconds / 60:.1f}", " / ".join(processors), str(file.task_count),
+                str(int((file.complete & ~file.ok).sum())), disturbed(file), job_checksum(job),
+                models_checksum(job, os.path.dirname(runs[-1]["job"]))]
+    return dict(zip(COLUMNS, made))
+
+
+def moment(text):
+    return datetime.fromisoformat(text.rstrip("Z"))
+
+
+def disturbed(file):
+    """Share of solves that are left out of times; "-" if no single solve was timed."""
+    from rodsweep.reading import measures, timings
+    if not timings.timed(file):
+        return "-"
+    sims = measures.simulations(file, file.complete)
+    if not len(sims):
+        return "-"
+    part = timings.times(file, sims)["all"]
+    solves, interrupted = part.solves.sum(), part.interrupted.sum()
+    return f"{100 * interrupted / solves:.1f} %" if solves else "-"
+
+
+def write(rows):
+    lines = [COLUMNS, *([rows[name][column] for column in COLUMNS] for name in sorted(rows))]
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    with open(ORIGINS, "w", encoding="utf-8") as file:
+        for line in lines:
+            file.write("  ".join(text.ljust(width) for text, width in zip(line, widths)).rstrip() + "\n")
+
+
+def main():
+    rows = read()
+    if len(sys.argv) == 1:
+        found = older(rows)
+        for name, why in found.items():
+            print(f"{name}: {why}")
+        return 1 if found else 0
+    for path in sys.argv[1:]:
+        row = row_of(path)
+        rows[row["study"]] = row
+    write(rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
