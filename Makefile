@@ -35,13 +35,14 @@ studies = bending_data helix_data spatial_bending spatial_helix temporal_bending
 score_scenes = bending_rod helix tree forest net lattice falling_rods knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo report score studies variants ablation pictures test test-long test-cluster test-arm bench sanitize fuzz schema pages docs format format-check tidy install uninstall clean
+.PHONY: help configure build demo report score studies archive variants ablation pictures test test-long test-cluster test-arm bench sanitize fuzz schema pages docs format format-check tidy install uninstall clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), write results/report.html'
 	@echo 'make report        results/report.html again: what the demo found, and the studies that were run, as a page to read'
 	@echo 'make score         the cheapest way to an error of the motion, with and without guesses, by scene (an hour; likewise)'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (two hours; continued if it was stopped)'
+	@echo 'make archive       results of make score and make studies, models and tables, with checksums: results/archive.tar'
 	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
 	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (an hour and a half; likewise)'
 	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind), draw their films (installs ffmpeg, for MP4)'
@@ -105,6 +106,15 @@ studies: build
 	  $(call study,$$study); \
 	done
 	@analysis/results/draw.sh results
+
+# What the tables were made of, as one file to upload. Stops if a study has not been run.
+archive:
+	@set -e; files="$(studies:%=results/%.h5) $(foreach scene,$(score_scenes),results/score/$(scene)_tuning.h5 results/score/$(scene)_test.h5) \
+	  CITATION.cff LICENSE jobs network/pretrained analysis/results"; \
+	ls -d $$files >/dev/null || { echo "Run 'make score' and 'make studies' first."; exit 1; }; \
+	find $$files -type f -print0 | sort -z | xargs -0 sha256sum >results/SHA256SUMS; \
+	tar --create --file results/archive.tar --transform 's,^,rodsweep-$(shell git rev-parse --short HEAD)/,' results/SHA256SUMS $$files; \
+	ls -lh results/archive.tar
 
 # Variants of rods.h5 and lattices.h5 with one setting changed each: their validation results and their costs.
 variants: build
