@@ -79,7 +79,7 @@ def methods(shown, panel):
         rows = panel.index[sims.own[panel.index] & (sims.task[panel.index, g] >= 0)]
         if len(rows):
             found[file.guesses[g]] = (shown.style(g), sims.task[rows, g], rows)
-    return found | shown.methods_without_guess(panel, reverse=True)
+    return found | shown.methods_without_guess(panel)
 
 
 def figure(shown, panels, series, found, options):

@@ -5,7 +5,6 @@
   speedup    time of zero-guess CG over the time with a guess: CG only, guess and CG, whole step; also direct solve
   time       time per solve split into assembly, guess and CG, per guess, with the direct solve
   four-curves  for learned guesses, as in Shao et al.: CG ratio, time of the guess over that of its CG, speedups
-  overview   only with --overview, as the only figure: CG ratio and time of guess and CG side by side, for a few guesses
 
 Each scene type and value of any other grid of the job has a row of panels. Figures of times need /solves in the file
 (record.solves "all"). Writes PDF and PNG and prints the paths.
@@ -21,7 +20,6 @@ from rodsweep.reading.sweepfile import SweepFile
 EXAMPLES = """examples:
   analysis/spatial.py results/demo.h5
   analysis/spatial.py results/demo.h5 --scene helix --tolerance 1e-2,1e-4 --newton all
-  analysis/spatial.py results/demo.h5 --overview --guess "zero,quadratic,subspace 10"
   analysis/spatial.py results/stiffness.h5 --x scene.youngs_modulus_pa --select scene.segments=20:40 --width 84"""
 
 
@@ -41,7 +39,6 @@ def arguments():
     study.add_figure_arguments(made)
     made.add_argument("--x", metavar="KEY", default="scene.segments",
                       help="parameter along x (default: scene.segments)")
-    made.add_argument("--overview", action="store_true", help="one figure: CG ratio beside the time of a solve")
     return made.parse_args()
 
 
@@ -52,12 +49,8 @@ def main():
         by_newton = timings.times(file, shown.sims) if timings.timed(file) else None
         if by_newton and not timings.measured(by_newton):
             by_newton = None
-        if by_newton and options.overview:
-            made = {"overview": figures.overview_figure(shown, by_newton)}
-        else:
-            made = all_figures(file, options, shown, by_newton)
         by_x = "" if options.x == "scene.segments" else f"by-{options.x.rsplit('.', 1)[-1]}"
-        study.save(file, options, made, [by_x])
+        study.save(file, options, all_figures(file, options, shown, by_newton), [by_x])
 
 
 def all_figures(file, options, shown, by_newton):

@@ -16,7 +16,6 @@ sys.path.insert(0, ANALYSIS)
 import h5py  # noqa: E402
 
 GUESSES = ("zero", "previous", "quadratic", "oracle(0.1)")
-LEVELS = ("newton_residual", "joint_gap")   # before every solve, and after the last iteration of a step
 ALONG = ("length_drift", "kinetic_energy_j", "potential_energy_j", "elastic_energy_j")
 TOLERANCES = tuple(10.0 ** -k for k in range(1, 9))
 
@@ -54,15 +53,12 @@ class Plant:
     def elastic_energy_j(self, step, steps, draw, guess):
         return np.full(len(step), 1.0)
 
-    def level(self, name, newton, draw, guess):
-        """Newton residual or joint gap before Newton iteration `newton`."""
-        return 1e-10 * np.ones(len(newton))
-
     assemble_s = 2e-6
     direct_s = 8e-6
     rest_s = 3e-6
     drift = 1e-3
-    gap = 2e-3
+    gap = 2e-3           # before every solve and at the end of a step, like the residual
+    residual = 1e-10     # of Newton
     penetration = None   # a number: the penetration in every step of a file with contact
     reached = staticmethod(lambda guess, tolerance, newton, segments, draw: True)
 
@@ -159,7 +155,7 @@ class Sweep:
         for t, (_, values, draw, own, _) in enumerate(tasks):
             mine, leading = (range(len(guesses)), "") if own < 0 else ([own], guesses[own])
             part = {**self._steps(draw, leading),
-                    **self._solves(guesses, mine, values.get("scene.segments", 10), draw, leading, rows_per_task > 0)}
+                    **self._solves(guesses, mine, values.get("scene.segments", 10), draw, rows_per_task > 0)}
             parts.append(part if done[t] else {name: np.zeros_like(rows) for name, rows in part.items()})
         found = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
         found["tasks/steps_done"] = np.where(done, self.steps, 0).astype(np.int32)
@@ -169,9 +165,9 @@ class Sweep:
     def _steps(self, draw, guess):
         """A task's rows of /steps."""
         plant, step = self.plant, np.arange(self.steps)
-        end = plant.level("newton_residual", np.array([self.newton]), draw, guess)
         found = {"time_s": 0.02 * (step + 1), "joint_gap": np.full(len(step), plant.gap),
-                 "newton_residual": end * np.ones(len(step)), "momentum_kg_m_s": np.tile([3.0, 0, 4], (len(step), 1)),
+                 "newton_residual": np.full(len(step), plant.residual),
+                 "momentum_kg_m_s": np.tile([3.0, 0, 4], (len(step), 1)),
                  "newton_iterations": np.full(len(step), self.newton, dtype=np.int16),
                  **{name: getattr(plant, name)(step, self.steps, draw, guess) for name in ALONG}}
         if plant.penetration is not None:
@@ -179,7 +175,7 @@ class Sweep:
         return {**{f"steps/{name}": values for name, values in found.items()},
                 "timing/steps/rest_s": np.full(len(step), plant.rest_s, dtype=np.float32)}
 
-    def _solves(self, guesses, mine, segments, draw, leading, with_rows):
+    def _solves(self, guesses, mine, segments, draw, with_rows):
         """The sums of /solves of a task with the guesses `mine`; its rows too, if with_rows."""
         plant, shape = self.plant, (len(guesses), len(TOLERANCES))
         j, at = np.tile(np.arange(self.newton), self.steps), np.repeat(np.arange(self.steps), self.newton)
@@ -200,7 +196,8 @@ class Sweep:
             times[:, i, g] = [take(guesses[g], i, segments, draw) for take in (plant.guess_s, plant.cg_s)]
         rows = {"solves/iterations": counts, "solves/start_matvecs": np.zeros(counts.shape[:2], dtype=np.int16),
                 "solves/step": at.astype(np.int32), "solves/newton": j.astype(np.int32),
-                **{f"solves/{name}": plant.level(name, j, draw, leading) for name in LEVELS},
+                "solves/newton_residual": np.full(len(j), plant.residual),
+                "solves/joint_gap": np.full(len(j), plant.gap),
                 "timing/solves/guess_s": times[0, j], "timing/solves/cg_s": times[1, j],
                 **{f"timing/solves/{name}": np.full(len(j), getattr(plant, name), dtype=np.float32)
                    for name in ("assemble_s", "direct_s")}}

@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 
 import running
+from rodsweep.reading import accuracy
 
 STEPS, FRAMES, SEGMENTS, SAMPLES = 4, 3, 5, 2
 SIZES, KINDS = (0.02, 0.01), (0, 1)
@@ -54,6 +55,19 @@ class Balance(running.Scripts):
     def test_a_file_with_one_kind_of_step_is_refused(self):
         running.Scripts.write(self, method="direct", scenes=("helix",), samples=1, grid={"time.step_s": SIZES})
         self.refused("balance.py", "sweep.h5", words="time.balance")
+
+
+class Times(running.Folder):
+    def test_a_step_takes_the_median_of_its_rest_assembly_guess_and_own_solve(self):
+        def interrupted(h5):
+            h5["timing/steps/rest_s"][0] += 1
+
+        # µs: rest 3, in each of three solves 2 of assembly and 8 of direct, or 1 of the guess and 5, 2.5, 2.5 of CG
+        for closed_loop, microseconds in ((False, 33), (True, 22)):
+            self.open(scenes=("helix",), guesses=("zero", "previous"), grid={"scene.segments": [10]}, samples=1,
+                      closed_loop=closed_loop)
+            file = self.changed(interrupted)
+            self.assertAlmostEqual(1e6 * accuracy.step_s(file, file.task_count - 1), microseconds, 4)
 
 
 if __name__ == "__main__":

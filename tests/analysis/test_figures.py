@@ -67,22 +67,10 @@ class Values(Drawn):
             self.assertTrue(any(np.allclose(other.get_ydata(), 1) for other in axes.lines))
             self.assertEqual(axes.get_ylim()[0], 0)
 
-    def test_an_overview_has_ratios_beside_times_of_guess_and_cg_per_segment(self):
-        study, times = self.study()
-        page = figures.overview_figure(study, times)
-        for ratio, time in page.axes:
-            drawn, = self.line(ratio, study.styles["previous"])
-            np.testing.assert_allclose(drawn.get_ydata(), 0.5, atol=0.01)
-            drawn, = self.line(time, study.styles["previous"])
-            np.testing.assert_allclose(drawn.get_ydata(), 0.1 + 0.5, rtol=1e-3)    # µs per segment
-            drawn, = self.line(time, style.DIRECT)
-            np.testing.assert_allclose(drawn.get_ydata(), 8 / np.array([10, 20, 40]), rtol=1e-3)
-            self.assertTrue(any(np.allclose(other.get_ydata(), 1) for other in time.lines))
-
     def test_every_figure_says_what_it_is_of(self):
         study, times = self.study(failed={0: "diverged"}, pending=(1,), guesses=("zero", "previous"), samples=7)
         for page in (figures.ratio_figure(study, [1]), figures.speedup_figure(study, times),
-                     figures.time_figure(study, times), figures.overview_figure(study, times)):
+                     figures.time_figure(study, times)):
             said = self.page_texts(page)
             for words in ("first Newton iteration (j = 0)", "‖b − Ax‖₂", "jacobi", "5–7 simulations per point",
                           "40 of 42 tasks ok, failed: 1 diverged, 1 pending", "95 %", "Bending rod", "Helix"):
@@ -167,7 +155,6 @@ class Legibility(Drawn):
             study, times = self.study(x=x, **{"samples": 2, "scenes": scenes, **settings})
             self.legible(figures.ratio_figure(study, range(4)))
             self.legible(figures.time_figure(study, times))
-            self.legible(figures.overview_figure(study, times))
 
     def test_a_grid_over_decades_has_a_logarithmic_axis_and_others_a_linear_one(self):
         for segments, scale in (([10, 55], "linear"), ([10, 100, 500], "log")):

@@ -39,7 +39,7 @@ class Large(unittest.TestCase):
     def test_many_short_tasks(self):
         self.check([("summary.py",), ("report.py",), ("spatial.py",), ("temporal.py",), ("heatmap.py", *BY_SIZE),
                     ("heatmap.py", *BY_SIZE[:2], "--y", "time.step_s", "--measure", "speedup-step"),
-                    ("long_term.py",), ("newton.py",), ("export.py", "--where", "tolerance=1e-2"),
+                    ("long_term.py",), ("export.py", "--where", "tolerance=1e-2"),
                     ("export.py", "--level", "solves", "--columns", "task,guess,iterations_1e-2", "--where",
                      "newton=0"),
                     ("export.py", "--level", "solves", "-o", "{folder}/solves.csv.gz"),
@@ -47,7 +47,7 @@ class Large(unittest.TestCase):
                    tasks=ROWS // 600, steps=100, newton=6)
 
     def test_few_long_tasks_in_a_closed_loop(self):
-        self.check([("summary.py",), ("report.py",), ("spatial.py",), ("temporal.py",), ("long_term.py",), ("newton.py",),
+        self.check([("summary.py",), ("report.py",), ("spatial.py",), ("temporal.py",), ("long_term.py",),
                     ("export.py", "--level", "steps", "--columns", "task,length_drift")],
                    tasks=max(4, ROWS // 120_000 // 4 * 4), steps=20_000, newton=6, closed_loop=True)
 

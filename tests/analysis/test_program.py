@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 import rodsweep
 import temporal
-from rodsweep.reading import along_time, joints, measures, newton_levels, timings, trajectory
+from rodsweep.reading import along_time, joints, measures, timings, trajectory
 from rodsweep.reading.sweepfile import SweepFile
 from running import run
 
@@ -221,18 +221,6 @@ class Program(unittest.TestCase):
         for measure in ("ratio", "matvec-ratio", "speedup-step", "joint-gap"):
             x = ("--x", "scene.segments", "--y", "scene.length_m", "--measure", measure, "--scene", "bending_rod")
             self.assertEqual(len(self.script("heatmap.py", path, *x).split()), 2)
-
-    def test_levels_of_newton_end_where_the_steps_end(self):
-        path = self.run_job("paired")
-        with SweepFile(path) as file:
-            found = newton_levels.levels(file, [0]).values
-            rows = slice(file.first_solve[0], file.first_solve[0] + file.solves[0])
-            j = file.h5["solves/newton"][rows]
-            for name in ("newton_residual", "joint_gap"):
-                values = file.h5[f"solves/{name}"][rows]
-                np.testing.assert_allclose(found[name][0, 0, 1], np.median(values[j == 0]))
-                self.assertLess(found[name][0, 2, 3], found[name][0, 0, 3])
-        self.assertIn("  direct", self.script("newton.py", path, "--scene", "helix"))
 
     def test_a_long_run_of_cg_and_direct_side_by_side(self):
         path = self.run_job("long", evaluation="closed_loop", scene=HELIX, guesses=["zero", "previous"],

@@ -10,9 +10,9 @@ import unittest
 import synthetic  # noqa: F401  (makes analysis/ importable)
 import numpy as np
 from rodsweep.reading import score
-from rodsweep.reading.accuracy import Way
+from rodsweep.reading.accuracy import Way, way_of
 from rodsweep.reading.sweepfile import SweepFile
-from running import run
+from running import Folder, run
 
 MODEL = os.path.join(os.environ["SOURCE_DIR"], "network", "pretrained", "rods.h5")
 
@@ -59,6 +59,21 @@ class Choice(unittest.TestCase):
         found |= {setting("copingnet rods-large 5 lag 8"): base, setting("copingnet rods-2 5 lag 9"): base}
         factor = score.factor(score.trainings(learned, found), base)
         self.assertEqual([float(factor.value), float(factor.low), float(factor.high)], [4, 2, 5])
+
+
+class Ways(Folder):
+    def test_a_way_has_what_applies_to_its_method(self):
+        file = self.open(scenes=("helix",), guesses=("zero", "previous"), samples=1, newton=2, closed_loop=True, grid={
+            "solve.method": ["direct", "xpbd", "cg"], "solve.iterations": [5],
+            "solve.forcing": ["fixed", "eisenstat_walker"]})
+        ways = dict.fromkeys(way_of(file, task) for task in range(file.task_count))
+        self.assertEqual(list(ways), [
+            Way("direct", 2), Way("xpbd", iterations=5),
+            *(Way("cg", 2, 0, 1e-2, "jacobi", guess, forcing) for forcing in (False, True) for guess in file.guesses)])
+        texts = [way.text() for way in ways]
+        self.assertEqual(texts[:3] + texts[-1:], [
+            "direct, Newton 2", "xpbd 5", "CG jacobi from zero to 1e-2, Newton 2",
+            "CG jacobi from previous to 1e-2 with forcing terms, Newton 2"])
 
 
 class Files(unittest.TestCase):

@@ -36,8 +36,6 @@ class Spatial(Scripts):
         printed = self.run_script("spatial.py", "sweep.h5", files=True).stdout.split()
         self.assertEqual(printed, [f"figures/sweep-{name}.{ending}" for name in ("cg-ratio", "speedup", "time")
                                    for ending in ("pdf", "png")])
-        printed = self.run_script("spatial.py", "sweep.h5", "--overview", "--format", "png", files=True).stdout
-        self.assertEqual(printed, "figures/sweep-overview.png\n")
 
     def test_the_same_figure_twice_is_the_same_file(self):
         self.write(scenes=("helix",), samples=2, solves=False)

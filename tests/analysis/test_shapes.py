@@ -34,9 +34,8 @@ DRAWING = {"summary --csv": ("--csv",), "export": (), "ablation": ("models",), "
            "heatmap": ("--x", "scene.segments", "--y", "tolerance"),
            "heatmap step": ("--x", "scene.segments", "--y", "scene.type", "--measure", "speedup-step"),
            "heatmap residual": ("--x", "scene.segments", "--y", "scene.type", "--measure", "newton-residual"),
-           "integrators": (), "long_term": (), "long_term --csv": ("--csv",), "newton": (), "paraview": ("--force",),
-           "render": ("--force",), "report": ("--force",), "side_by_side": (), "solvers": (), "spatial": (),
-           "spatial overview": ("--overview",), "temporal": (), "work_precision": ()}
+           "integrators": (), "long_term": (), "long_term --csv": ("--csv",), "paraview": ("--force",),
+           "render": ("--force",), "report": ("--force",), "side_by_side": (), "spatial": (), "temporal": ()}
 SCRIPTS = {**CHEAP, **DRAWING}
 
 
@@ -63,25 +62,19 @@ class Missed(synthetic.Plant):
 class NotNumbers(synthetic.Plant):
     """A run whose values are not numbers."""
 
-    gap = drift = np.nan
+    gap = drift = residual = np.nan
 
     def kinetic_energy_j(self, step, *_):
         return np.full(len(step), np.nan)
-
-    def level(self, name, newton, *_):
-        return np.full(len(newton), np.nan)
 
 
 class AtRest(synthetic.Plant):
     """Rods without motion: no energy, no error."""
 
-    gap = drift = 0.0
+    gap = drift = residual = 0.0
 
     def kinetic_energy_j(self, step, *_):
         return np.zeros(len(step))
-
-    def level(self, name, newton, *_):
-        return np.zeros(len(newton))
 
 
 def recorded(path):
@@ -260,12 +253,12 @@ SHAPES = {
         "scene.segments", "solve.norm")))),
 }
 # Shapes that once made these scripts fail.
-WORST = {"direct and xpbd": ("long_term", "newton", "report", "side_by_side", "solvers", "work_precision"),
-         "all timed out in a closed loop": ("long_term", "newton", "side_by_side"),
+WORST = {"direct and xpbd": ("long_term", "report", "side_by_side"),
+         "all timed out in a closed loop": ("long_term", "side_by_side"),
          "no solves": ("balance", "combinations", "front", "heatmap", "spatial", "temporal"),
          "no solves in one scene": ("spatial", "front"), "labels": ("spatial",), "times of zero": ("report", "front"),
          "times that are not numbers": ("spatial", "combinations"), "one step": ("balance",),
-         "values that are not numbers": ("long_term", "newton"), "plain": ("combinations by default", "compare"),
+         "values that are not numbers": ("long_term",), "plain": ("combinations by default", "compare"),
          "other tolerances": ("heatmap",), "grid of time steps": ("integrators",)}
 SENTENCES = {   # (shape, script): what it says
     ("no solves", "spatial"): "sweep.h5 has no CG ratios: no solve of the chosen simulations took an iteration (first "
@@ -273,7 +266,6 @@ SENTENCES = {   # (shape, script): what it says
     ("all timed out", "long_term"): "sweep.h5 has no recorded step in the chosen simulations: 0 of 8 tasks ok, failed: "
                                     "8 timed_out",
     ("times that are not numbers", "front"): "sweep.h5 has no times above 0, so the cost of guesses is not known",
-    ("values that are not numbers", "newton"): "sweep.h5 has no Newton residual in the chosen simulations",
     ("xpbd alone", "temporal"): "sweep.h5 has no guesses to compare in the chosen simulations",
     ("plain", "balance"): "sweep.h5 has only one kind of step in the chosen simulations: sweep time.balance over false "
                           "and true"}

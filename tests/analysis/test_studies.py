@@ -1,4 +1,4 @@
-"""All numbers of temporal, heatmap, long_term and newton against planted ones; missing values are excluded."""
+"""All numbers of temporal, heatmap and long_term against planted ones; missing values are excluded."""
 
 import argparse
 import csv
@@ -10,7 +10,7 @@ import heatmap
 import long_term
 import numpy as np
 import temporal
-from rodsweep.reading import along_time, envelopes, groups, heat, intervals, newton_levels
+from rodsweep.reading import along_time, envelopes, groups, heat, intervals
 from running import Scripts
 
 EVERYTHING = {"select": [], "scene": None, "guess": None, "tolerance": None, "newton": "first", "width": "174"}
@@ -300,59 +300,6 @@ class LongTerm(Studies):
         low, high, line = long_term._envelope(found, "energy_j", "zero", methods["zero"][1], scales)
         self.assertAlmostEqual(float(low[-1]), -0.5 / 2, places=6)
         self.assertAlmostEqual(float(high[0]), 0, places=6)
-
-
-class Converging(synthetic.Plant):
-    """Each iteration squares the residual, which differs between draws; gaps fall by a factor of ten."""
-
-    def level(self, name, newton, draw, guess):
-        if name == "joint_gap":
-            return 0.1 * 10.0 ** -newton
-        return (0.1 / (1 + draw)) ** (2.0 ** newton)
-
-
-class Newton(Studies):
-    NEWTON = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "newton": 3, "samples": 3, "steps": 4}
-
-    def test_levels_are_the_planted_ones_and_the_last_is_the_end_of_the_step(self):
-        file, sims = self.simulations(plant=Converging(), failed={1: "diverged"}, **self.NEWTON)
-        found = newton_levels.levels(file, sims.tasks())
-        self.assertEqual(found.tasks.tolist(), [0, 2])
-        for row, draw in enumerate((0, 2)):
-            expected = (0.1 / (1 + draw)) ** (2.0 ** np.arange(4))
-            for k in range(4):   # quartiles, median and largest are equal, since all steps are
-                np.testing.assert_allclose(found.values["newton_residual"][row, :, k], expected)
-        np.testing.assert_allclose(found.values["joint_gap"][0, :3, 1], [0.1, 0.01, 0.001])
-        np.testing.assert_allclose(found.share, 1)
-
-    def test_quartiles_and_the_largest_over_steps(self):
-        def change(h5):
-            h5["solves/newton_residual"][:12:3] = [1, 2, 3, 4]   # j = 0 of task 0
-            h5["solves/newton"][3 * 3 + 2], h5["solves/newton_residual"][3 * 3 + 2] = -1, np.nan  # not reached
-            h5["steps/newton_iterations"][3], h5["steps/newton_residual"][3] = 2, 9
-        self.open(plant=Converging(), **self.NEWTON)
-        found = newton_levels.levels(self.changed(change), [0])
-        np.testing.assert_allclose(found.values["newton_residual"][0, 0], [1.75, 2.5, 3.25, 4])
-        np.testing.assert_allclose(found.share[0], [1, 1, 1, 0.75])
-        for level in (2, 3):    # a step that ended early keeps its last value
-            self.assertEqual(found.values["newton_residual"][0, level, 3], 9)
-
-    def test_observed_orders(self):
-        np.testing.assert_allclose(newton_levels.orders([1e-1, 1e-2, 1e-4, 1e-8, 1e-16], 1e-10)[1:3], 2)
-        np.testing.assert_allclose(newton_levels.orders([1, 0.1, 0.01, 0.001], 0)[1:3], 1)
-        self.assertTrue(np.isnan(newton_levels.orders([1e-1, 1e-9, 1e-11, 1e-11], 1e-10)).all())
-
-    def test_the_table_has_medians_and_orders_of_every_way_to_solve(self):
-        self.write(plant=Converging(), **self.NEWTON)
-        said = self.run_script("newton.py", "sweep.h5", "--floor", "1e-12", files=True).stdout
-        self.assertIn("  direct", said)
-        order = next(line for line in said.splitlines() if line.startswith("    order"))
-        self.assertEqual(order.split(), ["order", "-", "2.00", "2.00", "-"])
-        self.assertTrue(said.rstrip().endswith("figures/sweep-newton.png"))
-        self.write(plant=Converging(), closed_loop=True, **self.NEWTON)
-        self.assertIn("CG to 1e-2, quadratic", self.run_script("newton.py", "sweep.h5").stdout)
-        self.write(plant=Converging(), solves=False, **self.NEWTON)
-        self.refused("newton.py", "sweep.h5", words="record.solves is")
 
 
 class RatiosOfSums(unittest.TestCase):

@@ -144,47 +144,6 @@ def four_curves_figure(study, by_newton):
     return page
 
 
-def overview_figure(study, by_newton):
-    """A row per panel: CG ratio at the tolerance of the timed solves, and time of guess and CG per segment, with the
-    direct solve. Meant for a few guesses (--guess)."""
-    file, part = study.file, by_newton[study.newton]
-    timed = timings.timed_rung(file)[study.sims.any_task]
-    ratios = measures.cg_ratios(file, study.sims, study.newton).ratio[np.arange(len(timed)), :, timed]
-    segments = file.results("segments", study.sims.any_task)[:, None]
-    own = (part.guess_s + part.cg_s) / part.solves / segments * 1e6
-    direct = part.direct_s / part.solves / segments * 1e6
-    rows = [[(intervals.mean(ratios[i], study.sims.sample[i]), intervals.median(own[i], study.sims.sample[i]),
-              intervals.median(direct[i], study.sims.sample[i])) for i in points.index] for points in study.points]
-    lines = study.lines()
-    shown = [ratio[g] for row in rows for ratio, _, _ in row for g in lines]
-    with_direct = any(np.isfinite(e.value).any() for row in rows for _, _, e in row)
-    notes = [f"CG ratio: iterations with a guess ÷ from zero, mean over {sample_text(shown)}. Time: guess, set-up and "
-             f"CG, median. Solved to tolerance {study.solve_tolerance()}. Counted: {measures.NEWTON[study.newton]}. "
-             f"{remarks.oracle_note(file, lines)}{timings.interruptions(part, study.sims)}"]
-    handles = study.handles(lines, "from zero") + ([style.DIRECT.handle("direct solve")] if with_direct else [])
-    page = layout.Page(study.width_mm, [p.caption() for p in study.panels], 2, 2, 46, handles, notes + [study.about()],
-                       study.timing_warning(), left_mm=14, gap_mm=16, ticks_mm=_ticks_mm(study))
-    for axes_row, points, row in zip(page.axes, study.points, rows):
-        x, categorical = layout.XAxis(points), points.categorical
-        ratio_axes, time_axes = axes_row
-        ratio_axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
-        time_axes.plot(x.position, [time.value[file.zero] for _, time, _ in row], **style.ZERO_LINE)
-        for rank, g in enumerate(lines):
-            dodged = x.dodged(rank, len(lines) + 1)
-            _line(ratio_axes, dodged, [ratio[g] for ratio, _, _ in row], study.style(g), categorical)
-            _line(time_axes, dodged, [time[g] for _, time, _ in row], study.style(g), categorical)
-        if with_direct:
-            _line(time_axes, x.dodged(len(lines), len(lines) + 1), [time[lines[0]] for _, _, time in row], style.DIRECT,
-                  categorical)
-        for axes, title, label in ((ratio_axes, "iterations", "CG ratio"), (time_axes, "time", "µs per segment and solve")):
-            axes.set_ylim(bottom=0)
-            axes.set_title(title)
-            axes.set_ylabel(label, labelpad=2)
-            x.apply(axes)
-    _x_labels(page, study)
-    return page
-
-
 def time_figure(study, by_newton):
     """Microseconds per segment and solve in stacked parts: a panel per guess, with the direct solve of its systems."""
     part = by_newton[study.newton]

@@ -20,10 +20,10 @@ CHARACTER_MM = 1.45  # approximate width of a digit of a tick
 class Page:
     """A figure laid out in millimetres: warning and legend above rows of equal panels, notes below them.
 
-    Each row has a title and may have a legend (`row_handles`). Panels of a row, axes[row][k], wrap at `columns`."""
+    Each row has a title. Panels of a row, axes[row][k], wrap at `columns`."""
 
     def __init__(self, width_mm, row_titles, panels_per_row, columns, panel_height_mm, handles, notes, warning="",
-                 left_mm=12, gap_mm=4, panel_titles_mm=4.5, ticks_mm=5.5, bar_mm=0, row_handles=()):
+                 left_mm=12, gap_mm=4, panel_titles_mm=4.5, ticks_mm=5.5, bar_mm=0):
         style.use()
         self.figure = plt.figure(figsize=(width_mm * style.MM, 100 * style.MM))
         legend, legend_mm = self._legend(handles, width_mm)
@@ -33,9 +33,8 @@ class Page:
         notes_mm, warning_mm, title_mm = 2.9 * len(notes) + 2, 3.4 * len(warned) + (1 if warned else 0), 5
         columns = min(columns, panels_per_row)
         lines = -(-panels_per_row // columns)
-        row_legends = [self._legend(of_row, width_mm) for of_row in row_handles] or [(None, 0)] * len(row_titles)
         panels_mm = lines * (panel_titles_mm + panel_height_mm + ticks_mm) + 3.2
-        rows_mm = len(row_titles) * (title_mm + panels_mm) + sum(mm for _, mm in row_legends)
+        rows_mm = len(row_titles) * (title_mm + panels_mm)
         height = warning_mm + legend_mm + bar_mm + rows_mm + notes_mm + 1
         self.figure.set_size_inches(width_mm * style.MM, height * style.MM)
         panel_width = (width_mm - left_mm - 2 - (columns - 1) * gap_mm) / columns
@@ -43,16 +42,15 @@ class Page:
         for k, line in enumerate(warned):
             self._text(2, top - 3.4 * k, line, width_mm, height, size=8, weight="bold", color=style.WARNING_COLOUR)
         top -= warning_mm
-        self._place(legend, top / height)
+        if legend:
+            legend.set_bbox_to_anchor((0, 0, 1, top / height), transform=self.figure.transFigure)
         top -= legend_mm
         self.bar_box = [(width_mm - 62) / width_mm, (top - 4.5) / height, 60 / width_mm, 2.6 / height]
         top -= bar_mm
         self.axes = []
-        for title, (row_legend, row_legend_mm) in zip(row_titles, row_legends):
+        for title in row_titles:
             self._text(2, top - 0.5, title, width_mm, height, size=8, weight="bold")
             top -= title_mm
-            self._place(row_legend, top / height)
-            top -= row_legend_mm
             row = []
             for k in range(panels_per_row):
                 line, column = divmod(k, columns)
@@ -81,10 +79,6 @@ class Page:
             if box.width / self.figure.dpi / style.MM <= width_mm - 2 or columns == 1:
                 return legend, box.height / self.figure.dpi / style.MM + 1.5
             legend.remove()
-
-    def _place(self, legend, top):
-        if legend is not None:
-            legend.set_bbox_to_anchor((0, 0, 1, top), transform=self.figure.transFigure)
 
     def label_y(self, axes, panel, text):
         """Labels the first panel of a line; the others get no label and no numbers."""

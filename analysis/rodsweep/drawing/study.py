@@ -47,12 +47,12 @@ class Study:
         found = [self.style(g).handle(self.file.guesses[g]) for g in lines]
         return found + ([Line2D([], [], label=zero_text, **style.ZERO_LINE)] if zero_text else [])
 
-    def methods_without_guess(self, panel, reverse=False):
+    def methods_without_guess(self, panel):
         """{method: (style, tasks, rows of Simulations)} of the methods without a guess in a panel."""
         rows = panel.index[~self.sims.own[panel.index]]
         tasks = self.sims.any_task[rows]
         names = measures.without_guess(self.file, tasks)
-        looks = style.guess_styles(sorted(set(names.tolist()), reverse=reverse))
+        looks = style.guess_styles(sorted(set(names.tolist()), reverse=True))
         return {name: (look, tasks[names == name], rows[names == name]) for name, look in looks.items()}
 
     def time_axis(self, tasks, steps):
