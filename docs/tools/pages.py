@@ -22,6 +22,8 @@ line. A text in @<<...>> replaces the visible text there, and is not shown:
     | bending rods@<<Bending rod>> | .00 **.00** |
     {% endfilter %}
 
+{{ score("10 %", "1 %") }} is the table of score.txt at these errors.
+
 The numbers in the cells are styles. A cell has one number per column in its address, each with or without its
 interval, [.00, .00]. Text in `backticks` and columns called `-` do not change. In tables, a | in an address is \\|.
 """
@@ -57,22 +59,59 @@ class Tables:
     def cell(self, address, style):
         """The number at an address, in a style."""
         name, section, block, row, column, *rest = [part.strip() for part in address.split(";")]
-        if name in self.older:
-            raise NotFound(f"{name}.txt is not quoted: {self.older[name]}; run the study and draw it again: {address!r}")
-        if name not in self.lines:
-            path = os.path.join(self.folder, f"{name}.txt")
-            if not os.path.exists(path):
-                raise NotFound(f"there is no table {path}: {address!r}")
-            with open(path, encoding="utf-8") as file:
-                self.lines[name] = file.read().splitlines()
+        lines = self._lines(name)
         try:
-            text = find_cell(self.lines[name], section, block, row, column)
+            text = find_cell(lines, section, block, row, column)
         except NotFound as missing:
             raise NotFound(f"{name}.txt has no {missing} of {address!r}") from None
         numbers, place = NUMBER.findall(text), int(rest[0]) - 1 if rest else 0
         if place >= len(numbers):
             raise NotFound(f"{name}.txt has no number {place + 1} in {text!r} of {address!r}")
         return styled(numbers[place], style)
+
+    def _lines(self, name):
+        if name not in self.lines:
+            path = os.path.join(self.folder, f"{name}.txt")
+            if not os.path.exists(path):
+                raise NotFound(f"there is no table {path}")
+            for study, why in self.older.items():
+                if study == name or (name == "score" and study.endswith("_tuning")):
+                    raise NotFound(f"{name}.txt is not quoted: {why}; run the study and draw it again")
+            with open(path, encoding="utf-8") as file:
+                self.lines[name] = file.read().splitlines()
+        return self.lines[name]
+
+    def score(self, *levels):
+        """A Markdown table of the times in score.txt at these errors, such as "1 %". The least time is bold; a time in
+        parentheses is of a setting whose error is above its level on the test draws."""
+        kinds = {"direct solve": "direct solve", "CG from zero": "CG from zero", "CG, classical guess": "classical guess",
+                 "CG, learned guess": "learned guess", "CG, learned preconditioner": "learned preconditioner",
+                 "CG, Jacobi": "Jacobi, any guess", "Gauss-Seidel": "Gauss–Seidel"}
+        lines = self._lines("score")
+        scenes = dict.fromkeys(found.group(1) for found in map(re.compile(r"(.+), error \S+ %").match, lines) if found)
+        rows = [["scene", "error", *kinds.values()], ["---"] * (2 + len(kinds))]
+        for scene in scenes:
+            for level in levels:
+                block = f"{scene}, error {level}"
+                times = [self._score_cell(lines, block, kind) for kind in kinds]
+                least = min((seconds for seconds, kept in times if kept), default=None)
+                rows.append([scene, level, *(self._score_text(seconds, kept, seconds == least) for seconds, kept in times)])
+        return "\n".join(f"| {' | '.join(row)} |" for row in rows) + "\n"
+
+    @staticmethod
+    def _score_cell(lines, block, kind):
+        """(ms of a simulated second or None, whether the error is at most that of the block)"""
+        if any(line.startswith(f"{block}: ") for line in lines):    # no setting reached it
+            return None, False
+        time, error = (find_cell(lines, block, block, kind, column) for column in ("ms/s", "error there"))
+        return (None, False) if time == "-" else (Decimal(time), re.fullmatch(r"[\d.e-]+ %", error) is not None)
+
+    @staticmethod
+    def _score_text(seconds, kept, least):
+        if seconds is None:
+            return "–"
+        text = f"{seconds.normalize():f}"
+        return f"**{text}**" if least and kept else text if kept else f"({text})"
 
     def table(self, text, address):
         """A Markdown table with the numbers of its address."""
@@ -163,7 +202,7 @@ def rendered(template, folder=TABLES):
     environment = jinja2.Environment(keep_trailing_newline=True, trim_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters["table"] = tables.table
     with open(template, encoding="utf-8") as file:
-        return environment.from_string(file.read()).render(cell=tables.cell)
+        return environment.from_string(file.read()).render(cell=tables.cell, score=tables.score)
 
 
 def templates(root=ROOT):

@@ -21,12 +21,8 @@ CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, con
   const CopingNetSettings& settings = model_->net.settings();
   if ((use.corrections > 1 || use.lag_steps > 0 || use.stop_at > 0) && settings.processor != Processor::factors)
     throw std::invalid_argument("CopingNetCorrection: corrections, lag_steps and stop_at need a model with factors");
-  if (has_all_couplings(settings))
-    coupled_ = std::make_unique<CoupledInference>(model_->net.coupled(), model_->net.parameters(), encoder_.pattern());
-  else if (settings.processor == Processor::factors)
-    factors_ = std::make_unique<FactorInference>(model_->net.factors(), model_->net.parameters(),
-                                                 encoder_.topology().forest, encoder_.pattern());
-  may_harm_ = encoder_.topology().forest.cut && settings.processor != Processor::message_passing && !coupled_;
+  if (settings.processor == Processor::factors) factors_.emplace(*model_, encoder_);
+  may_harm_ = encoder_.topology().forest.cut && factors_ && !has_all_couplings(settings);
   if (may_harm_) base_.resize(a.unknowns());
 }
 
@@ -51,7 +47,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
     return true;
   }
   if (factors_serve(at)) {
-    solve_with_factors();
+    factors_->solve(residual_, d_);
   } else {
     run(rod, system, at, x, moves != nullptr);
     proposal.renewed = use_.lag_steps > 0;
@@ -100,7 +96,7 @@ bool CopingNetCorrection::factors_serve(const SolvePosition& at) const {
 /// along d_. Returns the energy d_ . A d_.
 double CopingNetCorrection::correct_again(const LinearSystem& system, double energy, double& length) {
   previous_.swap(d_);
-  solve_with_factors();
+  factors_->solve(residual_, d_);
   d_ -= d_.dot(ad_) / energy * previous_;
   system.multiply(d_.data(), ad_.data());
   energy = d_.dot(ad_);
@@ -116,21 +112,10 @@ void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, const 
     model_->scales.nodes.apply(nodes_);
     model_->scales.edges.apply(edges_);
   }
-  if (coupled_)
-    coupled_->factorise(encoder_.system()->frames(), system.matrix());
-  else if (factors_)
-    factors_->factorise(edges_, encoder_.system()->frames(), system.matrix());
-  else
-    return answer(with_moves);
+  if (!factors_) return answer(with_moves);
+  factors_->factorise(encoder_, edges_, system.matrix());
   factorised_at_ = at;
-  solve_with_factors();
-}
-
-void CopingNetCorrection::solve_with_factors() {
-  if (coupled_)
-    coupled_->solve(residual_, d_);
-  else
-    factors_->solve(residual_, d_);
+  factors_->solve(residual_, d_);
 }
 
 /// Sets d_ and, on request, y_nodes_ from the features.

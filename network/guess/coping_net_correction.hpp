@@ -17,8 +17,7 @@
 #include <optional>
 #include <vector>
 
-#include "network/processor/coupled_inference.hpp"
-#include "network/processor/factor_inference.hpp"
+#include "network/guess/learned_factors.hpp"
 #include "network/processor/model.hpp"
 #include "solver/guess/initial_guess.hpp"
 
@@ -46,7 +45,6 @@ class CopingNetCorrection {
  private:
   void run(const Rod& rod, const LinearSystem& system, const SolvePosition& at, const VectorX& x, bool with_moves);
   void answer(bool with_moves);
-  void solve_with_factors();
   bool factors_serve(const SolvePosition& at) const;
   double correct_again(const LinearSystem& system, double energy, double& length);
   bool write(std::vector<Lane8>& moves) const;
@@ -56,8 +54,7 @@ class CopingNetCorrection {
   bool may_harm_ = false;  ///< loops were cut
   std::optional<SolvePosition> factorised_at_;
   FeatureEncoder encoder_;
-  std::unique_ptr<FactorInference> factors_;
-  std::unique_ptr<CoupledInference> coupled_;  ///< with all couplings
+  std::optional<LearnedFactors> factors_;
   CopingNet<float>::Tape tape_;
   Tensor<float> nodes_, edges_, y_edges_, y_nodes_;
   VectorX residual_, d_, ad_, previous_, base_;

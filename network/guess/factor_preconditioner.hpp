@@ -1,14 +1,11 @@
-// The learned factors of a rod's matrix as preconditioner of CG: z = F r (network/processor/factor_sweeps.hpp, and
-// coupled_factors.hpp with all couplings). F is symmetric, but nothing makes it positive: CG then ends as `indefinite`.
-// Learned preconditioners of other kinds: Li et al. 2023 (NeuralPCG), Häusner et al. 2023 (NeuralIF), Trifonov et al.
+// The learned factors of a rod's matrix as preconditioner of CG: z = F r (learned_factors.hpp). F is symmetric, but
+// nothing makes it positive: CG then ends as `indefinite`. Learned preconditioners of other kinds: Li et al. 2023 (NeuralPCG), Häusner et al. 2023 (NeuralIF), Trifonov et al.
 // 2024 (PreCorrector).
 #pragma once
 
 #include <memory>
 
-#include "network/processor/coupled_inference.hpp"
-#include "network/processor/factor_inference.hpp"
-#include "network/processor/model.hpp"
+#include "network/guess/learned_factors.hpp"
 #include "solver/cg/block_preconditioner.hpp"
 #include "solver/linear/linear_system.hpp"
 
@@ -28,8 +25,7 @@ class FactorPreconditioner : public BlockPreconditioner {
   const Rod& rod_;
   const LinearSystem& system_;
   FeatureEncoder encoder_;
-  std::unique_ptr<FactorInference> factors_;
-  std::unique_ptr<CoupledInference> coupled_;  ///< with all couplings
+  LearnedFactors factors_;
   Tensor<float> nodes_, edges_;
   VectorX zero_, r_, z_;
 };

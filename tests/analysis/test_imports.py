@@ -9,8 +9,9 @@ from pathlib import Path
 
 import synthetic
 
-# Each may import those before it. `rodsweep` means the modules directly in the package; "" means the scripts.
-ROOMS = ("rodsweep.reading", "rodsweep.writing", "rodsweep.drawing", "rodsweep.report", "rodsweep", "")
+# Each may import those before it. `rodsweep` means the modules directly in the package; "" means the scripts, "results" those
+# that make the tables of this repository.
+ROOMS = ("rodsweep.reading", "rodsweep.writing", "rodsweep.drawing", "rodsweep.report", "rodsweep", "", "results")
 DRAW = {"matplotlib", "PIL"}          # not imported by reading and writing
 
 

@@ -59,6 +59,19 @@ class Pages(unittest.TestCase):
             self.page(template)
         return str(refused.exception)
 
+    def test_the_score_is_a_table_of_times_at_errors(self):
+        kinds = ["cheapest of all", "direct solve", "CG from zero", "CG, classical guess", "CG, learned guess",
+                 "CG, learned preconditioner", "CG, Jacobi", "Gauss-Seidel"]
+        times = [("2.5", "3 %"), ("2.5", "3 %"), ("10", "3 %"), ("1.25", "(12 %)"), ("4", "3 of 10 failed"), ("-", "-"), ("2e+03", "3 %"),
+                 ("-", "-")]
+        rows = [["net, error 10 %", "ms/s", "error there"], *([kind, *cells] for kind, cells in zip(kinds, times))]
+        lines = [f"{row[0]:<30}{row[1]:>10}{row[2]:>20}" for row in rows]
+        self.write("score.txt", "\n".join([*lines, "", "net, error 1 %: reached by no setting", ""]))
+        table = self.page("{{ score('10 %', '1 %') }}").splitlines()
+        self.assertEqual(table[0].split(" | ")[:4], ["| scene", "error", "direct solve", "CG from zero"])
+        self.assertEqual(table[2], "| net | 10 % | **2.5** | 10 | (1.25) | (4) | – | 2000 | – |")
+        self.assertEqual(table[3], "| net | 1 % | – | – | – | – | – | – | – |")
+
     def test_a_table_that_is_older_than_its_job_or_models_is_not_quoted(self):
         with open(origins.find_job("tree_wind"), encoding="utf-8") as file:
             job = json.load(file)
