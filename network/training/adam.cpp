@@ -1,10 +1,18 @@
 #include "network/training/adam.hpp"
 
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace rodsweep {
 
 Adam::Adam(std::size_t size, const Settings& settings) : settings_(settings), mean_(size), square_(size) {}
+
+double Adam::usual_norm() const {
+  if (steps_ < 100) return std::numeric_limits<double>::infinity();
+  const double sum = std::accumulate(square_.begin(), square_.end(), 0.0);
+  return std::sqrt(sum / (1 - std::pow(settings_.beta2, static_cast<double>(steps_))));
+}
 
 void Adam::step(double rate, const AlignedVector<float>& gradient, AlignedVector<float>& weights) {
   ++steps_;

@@ -19,6 +19,9 @@ class Adam {
   /// Continues from earlier moments after that many steps.
   void restore(std::int64_t steps, const AlignedVector<float>& mean, const AlignedVector<float>& square);
 
+  /// The root mean square of recent gradients' norms; infinite in the first hundred steps, which are too few.
+  double usual_norm() const;
+
   /// weights -= rate * (m / (1 - beta1^t) / (sqrt(v / (1 - beta2^t)) + epsilon) + weight_decay * weights)
   void step(double rate, const AlignedVector<float>& gradient, AlignedVector<float>& weights);
 

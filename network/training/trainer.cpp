@@ -13,6 +13,10 @@
 namespace rodsweep {
 namespace {
 
+// A longer gradient, relative to the usual one, would move all weights by several times the rate: enough to kill a
+// network of small factors, which then never recovers.
+constexpr double largest_spike = 3;
+
 /// Element `index`, from 1, of a seed's random sequence. It gives the same permutations on every machine.
 std::uint64_t random_bits(std::uint64_t seed, std::uint64_t index) {
   return split_mix(seed + (index - 1) * split_mix_increment);
@@ -90,7 +94,8 @@ double Trainer::update(const std::vector<const float*>& shards) {
   }
   for (const float g : sum) square += static_cast<double>(g) * static_cast<double>(g);
   const double mean = 1.0 / settings_.batch, norm = mean * std::sqrt(square);
-  const auto factor = static_cast<float>(norm > settings_.clip ? mean * settings_.clip / norm : mean);
+  const double most = std::min(settings_.clip, largest_spike * adam_.usual_norm());
+  const auto factor = static_cast<float>(norm > most ? mean * most / norm : mean);
   for (float& g : sum) g *= factor;
 
   const double done = static_cast<double>(step_ + 1) / static_cast<double>(steps());

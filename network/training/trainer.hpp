@@ -5,7 +5,7 @@
 //
 // Step t of an epoch takes the next `batch` examples of a permutation that depends on (seed, epoch) alone; its shards
 // are equal parts of it. Adam's rate rises linearly over the first `warm_up` of all steps, then falls along a cosine to
-// zero. The gradient's norm is clipped.
+// zero. The gradient's norm is clipped, to `clip` and to three times its usual size.
 #pragma once
 
 #include <cstdint>

@@ -43,7 +43,9 @@ Key training() {
                      .also_called({"learning_rate", "lr"}),
                  number_key("warm_up", "fraction of all steps in which the rate rises").from(0, 0.5).defaults_to(0.02),
                  number_key("weight_decay", "decoupled decay of the weights").from(0, 1).defaults_to(0),
-                 number_key("clip", "maximum norm of a gradient; larger gradients are scaled down")
+                 number_key("clip",
+                            "maximum norm of a gradient; larger ones, and those over three times the usual norm, are "
+                            "scaled down")
                      .above(0)
                      .at_most(1e9)
                      .defaults_to(1),

@@ -220,6 +220,34 @@ TEST_CASE("the rate rises to its peak and falls to zero") {
   CHECK(rates.back() == Approx(0).margin(1e-12));
 }
 
+TEST_CASE("a gradient far longer than usual moves the weights as one of three times the usual norm") {
+  const Examples data = sample_examples(small_network(), 3, 4);
+  TrainingSettings settings = small_training();
+  settings.epochs = 200;
+  settings.clip = 1e9;
+  // The same contribution from each shard; alternating signs leave Adam's mean near zero.
+  const auto trained = [&](float last) {
+    CopingNet<float> net(small_network(), 1);
+    Trainer trainer(net, data.examples, settings);
+    std::vector<float> shard(trainer.shard_size());
+    const auto update = [&](float gradient) {
+      std::fill(shard.begin(), shard.end(), gradient);
+      trainer.update(std::vector<const float*>(4, shard.data()));
+    };
+    for (int k = 0; k < 120; ++k) update(k % 2 == 0 ? 1.F : -1.F);
+    update(last);
+    return net.parameters().values();
+  };
+  const auto spike = trained(1e4F), three = trained(3.F), two = trained(2.F);
+  double largest = 0, other = 0;
+  for (std::size_t i = 0; i < spike.size(); ++i) {
+    largest = std::max(largest, static_cast<double>(std::abs(spike[i] - three[i])));
+    other = std::max(other, static_cast<double>(std::abs(two[i] - three[i])));
+  }
+  CHECK(largest < 1e-6);
+  CHECK(other > 1e-5);
+}
+
 TEST_CASE("settings that make no sense are refused") {
   const Examples data = sample_examples(small_network(), 1, 4);
   CopingNet<float> net(small_network(), 1);
