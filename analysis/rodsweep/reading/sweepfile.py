@@ -173,13 +173,17 @@ class SweepFile:
         copied = self.h5["/timing/tasks/copied_guess"][:][tasks] == 1
         return copied.any(axis=1) & ~copied.all(axis=1) & (self.own_guess[tasks] < 0)
 
+    def job_text(self):
+        """The job as it was given, in bytes; empty if the file does not have it."""
+        if "/job/text" not in self.h5:
+            return b""
+        text = np.asarray(self.h5["/job/text"][()])    # one string, or an array of characters or of bytes
+        return text.tobytes().rstrip(b"\0")
+
     def job(self):
         """The parsed job; empty if it cannot be parsed."""
-        if "/job/text" not in self.h5:
-            return {}
-        text = np.asarray(self.h5["/job/text"][()]).tobytes()  # one string, or an array of characters or of bytes
         try:
-            parsed = json.loads(text.rstrip(b"\0").decode("utf-8-sig", "replace"))
+            parsed = json.loads(self.job_text().decode("utf-8-sig", "replace"))
         except ValueError:
             return {}
         return parsed if isinstance(parsed, dict) else {}
