@@ -1,12 +1,16 @@
-"""Results of rodsweep in Python. `rodsweep.open("results/demo.h5")` gives pandas frames and xarray datasets.
+"""Jobs and results of rodsweep in Python. `rodsweep.Job(...).run()` runs a job and opens its results;
+`rodsweep.open("results/demo.h5")` gives pandas frames and xarray datasets.
 
 `reading` reads files and computes all numbers, `writing` writes rows in other formats, `drawing` makes figures,
 pictures and films. The scripts of analysis/ use them; they are installed as `rodsweep-summary` and so on.
 """
 
 try:
+    from rodsweep.jobs import Job, Plan
+    from rodsweep.program import JobError, JobWarning
     from rodsweep.reading.errors import UserError
     from rodsweep.results import Results
+    from rodsweep.sweeps import grid, integer, log_uniform, uniform, zip
 except ModuleNotFoundError as error:
     if error.name.startswith("rodsweep"):
         raise
@@ -14,7 +18,8 @@ except ModuleNotFoundError as error:
                       name=error.name) from None
 
 __version__ = "1.0.0"    # same as in CMakeLists.txt (tested)
-__all__ = ["Results", "UserError", "open"]
+__all__ = ["Job", "JobError", "JobWarning", "Plan", "Results", "UserError", "grid", "integer", "log_uniform", "open",
+           "uniform", "zip"]
 
 
 def open(path):
