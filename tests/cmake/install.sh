@@ -22,6 +22,8 @@ done
 "$bin/rodsweep-summary" smoke.h5 | cmp - summary.txt
 "$bin/rodsweep-summary" --help | grep -q '^  rodsweep-summary results/demo.h5'
 PYTHONPATH="$share/analysis" /usr/bin/python3 -c 'import rodsweep; print(rodsweep.open("smoke.h5"))' | grep 'tasks ok, none failed'
+found=$(env -u RODSWEEP PYTHONPATH="$share/analysis" /usr/bin/python3 -c 'from rodsweep import program; print(program.path())')
+[ "$found" -ef "$bin/rodsweep" ] || fail "rodsweep.Job runs $found"
 "$bin/rodsweep-report" smoke.h5    # the page's style, scripts and libraries are installed
 grep -q 'Observable Plot' smoke.html
 "$share/mpi-env.sh" "$MPIRUN" -n 2 "../a prefix/bin/rodsweep" --version
