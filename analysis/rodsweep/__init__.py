@@ -9,6 +9,7 @@ try:
     from rodsweep.jobs import Job, Plan
     from rodsweep.program import JobError, JobWarning
     from rodsweep.reading.errors import UserError
+    from rodsweep.reading.systems import Systems
     from rodsweep.results import Results
     from rodsweep.sweeps import grid, integer, log_uniform, uniform, zip
 except ModuleNotFoundError as error:
@@ -18,10 +19,15 @@ except ModuleNotFoundError as error:
                       name=error.name) from None
 
 __version__ = "1.0.0"    # same as in CMakeLists.txt (tested)
-__all__ = ["Job", "JobError", "JobWarning", "Plan", "Results", "UserError", "grid", "integer", "log_uniform", "open",
-           "uniform", "zip"]
+__all__ = ["Job", "JobError", "JobWarning", "Plan", "Results", "Systems", "UserError", "grid", "integer", "log_uniform",
+           "open", "systems", "uniform", "zip"]
 
 
 def open(path):
     """Results of a sweep, which may still be running. Raises UserError if the file is not a sweep."""
     return Results(path)
+
+
+def systems(path):
+    """The linear systems in a file of `rodsweep systems`: a sequence, read on demand. Raises UserError for other files."""
+    return Systems(path)

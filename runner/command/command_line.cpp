@@ -194,6 +194,18 @@ CLI::App* add(CLI::App& app, RerunOptions& rerun) {
   return command;
 }
 
+CLI::App* add(CLI::App& app, SystemsOptions& systems) {
+  CLI::App* command = app.add_subcommand("systems", "Repeats one task and writes the linear systems that it solves");
+  command->footer(systems_help);
+  command->add_option("FILE", systems.file, "Results file (HDF5)")->required();
+  command->add_option("TASK", systems.task, "Number of the task, from 0")->required();
+  command->add_option("-o,--output", systems.output, "New file; never overwritten [FILE-systems-TASK.h5]")
+      ->type_name("FILE");
+  command->add_option("--every", systems.every, "Systems of every Kth step [10]")->check(above_zero())->type_name("K");
+  command->add_flag("--first", systems.first, "Only those of first Newton iterations");
+  return command;
+}
+
 CLI::App* add(CLI::App& app, PackOptions& pack) {
   CLI::App* command = app.add_subcommand("pack", "Writes a compressed copy of a results file");
   command->footer(pack_help);
@@ -252,9 +264,10 @@ Command parse_command_line(int argc, const char* const* argv) {
   RunOptions run;
   PlanOptions plan;
   RerunOptions rerun;
+  SystemsOptions systems;
   run.program = plan.program = argv[0];
   MergeOptions merge;
-  run.command = rerun.command = merge.command = typed(argc, argv);
+  run.command = rerun.command = systems.command = merge.command = typed(argc, argv);
   ValidateOptions validate;
   StatusOptions status;
   InfoOptions info;
@@ -263,7 +276,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   const auto offer = [&](auto&... options) {
     (add(app, options)->callback([&chosen, &options] { chosen = options; }), ...);
   };
-  offer(run, plan, validate, status, info, rerun, pack, merge);
+  offer(run, plan, validate, status, info, rerun, systems, pack, merge);
 
   CLI::App* schema = app.add_subcommand("schema", "Prints the JSON Schema of jobs, for editors");
   schema->footer(schema_help);

@@ -13,6 +13,7 @@
 #include "runner/command/rerun_command.hpp"
 #include "runner/command/run_command.hpp"
 #include "runner/command/status_command.hpp"
+#include "runner/command/systems_command.hpp"
 #include "runner/command/validate_command.hpp"
 
 namespace rodsweep {
@@ -24,7 +25,7 @@ struct PrintedText {
 };
 
 using Command = std::variant<RunOptions, PlanOptions, ValidateOptions, StatusOptions, InfoOptions, RerunOptions,
-                             PackOptions, MergeOptions, ExternalCommand, PrintedText>;
+                             SystemsOptions, PackOptions, MergeOptions, ExternalCommand, PrintedText>;
 
 Command parse_command_line(int argc, const char* const* argv);
 

@@ -80,6 +80,8 @@ ExitCode start(const Options& options, Console& console) {
 
 ExitCode start(const RerunOptions& options, Console& console) { return execute_with_petsc(options, console); }
 
+ExitCode start(const SystemsOptions& options, Console& console) { return execute_with_petsc(options, console); }
+
 ExitCode start(const MergeOptions& options, Console& console) { return execute_with_petsc(options, console); }
 
 ExitCode start(const PlanOptions& options, Console& console) {

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 #include <mpi.h>
 
+#include "runner/command/stored_task.hpp"
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/experiment/task_body.hpp"
 #include "runner/file/file_reading.hpp"
-#include "runner/file/inspect.hpp"
 #include "runner/file/results_file.hpp"
-#include "runner/file/resume_check.hpp"
-#include "runner/file/stored_plan.hpp"
 #include "runner/file/task_comparison.hpp"
 #include "runner/file/unfinished_file.hpp"
 
@@ -17,16 +15,6 @@ namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Throws FileError, with advice, if the file does not have this task or is itself a rerun.
-void check_task(const RerunOptions& options, const FileSummary& file) {
-  if (file.rerun_of_task)
-    throw FileError(fmt::format("{} holds only task {} of a sweep, from `rodsweep rerun`: use the file of the sweep",
-                                file.path.native(), *file.rerun_of_task));
-  if (options.task < 0 || options.task >= file.tasks)
-    throw FileError(
-        fmt::format("{} has no task {}: must be from 0 to {}", file.path.native(), options.task, file.tasks - 1));
-}
 
 ExitCode compare(const RerunOptions& options, const fs::path& output, const Plan& whole, Console& console) {
   const std::int64_t every = whole.job().values["record"]["trajectory_every"];
@@ -45,14 +33,12 @@ ExitCode compare(const RerunOptions& options, const fs::path& output, const Plan
 
 ExitCode execute(const RerunOptions& options, Console& console) {
   const StopSignal signal;
-  const FileSummary before = inspect(options.file);
-  check_task(options, before);
+  const StoredTask stored = stored_task(options.file, options.task, options.trajectory_every);
+  const Plan& whole = stored.whole;
+  const Plan& plan = stored.alone;
   const fs::path output = options.output.value_or(file_beside(options.file, fmt::format("-task-{}", options.task)));
   refuse_existing(output);
   if (const std::string left = unfinished_text(output); !left.empty()) console.warn(left);
-  const Plan whole = stored_plan(before);
-  check_same_tasks(options.file, whole);
-  const Plan plan = whole.alone(options.task, options.trajectory_every);
   Provenance provenance = provenance_of_this_process(options.command);
   provenance.job = whole.job().path.native();
 

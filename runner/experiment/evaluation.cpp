@@ -18,10 +18,28 @@
 namespace rodsweep {
 namespace {
 
+class ObservedSolve : public LinearSolve {
+ public:
+  ObservedSolve(const Scene& scene, LinearSolve& solve, const ObserveSystem& observe)
+      : scene_(scene), solve_(solve), observe_(observe) {}
+
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                     VectorX& delta_lambda) override {
+    const SolveOutcome outcome = solve_.solve(system, at, assemble_s, delta_lambda);
+    observe_(scene_.rods[static_cast<std::size_t>(at.rod)], system, at, delta_lambda);
+    return outcome;
+  }
+
+ private:
+  const Scene& scene_;
+  LinearSolve& solve_;
+  const ObserveSystem& observe_;
+};
+
 /// Builds the scene and its systems and runs the steps; sets outcome and message. Returns false if abandoned between
 /// steps. If interrupted elsewhere, throws InterruptedComputation and sets no ratios: the last system may lack guesses.
 bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop,
-              const Stopwatch& watch) {
+              const Stopwatch& watch, const ObserveSystem& observe) {
   const auto is_late = [&] { return spec.time_limit_s > 0 && watch.seconds() > spec.time_limit_s; };
   const Interruptible interruptible([&] { return (stop && stop()) || is_late(); });
   Scene scene = build_scene(spec.scene);
@@ -29,8 +47,10 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
   std::optional<StoringSolve> storing;
   if (const int iterations = spec.output.stored_iterations(spec.time.newton_iterations); iterations > 0)
     storing.emplace(scene, iterations, solve, record);
-  const std::unique_ptr<Projection> projection =
-      make_projection(scene, spec, record, storing ? static_cast<LinearSolve&>(*storing) : solve);
+  LinearSolve* outermost = storing ? static_cast<LinearSolve*>(&*storing) : &solve;
+  std::optional<ObservedSolve> observed;
+  if (observe) outermost = &observed.emplace(scene, *outermost, observe);
+  const std::unique_ptr<Projection> projection = make_projection(scene, spec, record, *outermost);
   TimeStepper stepper(scene, step_settings(spec.time));
 
   SimulationLog simulation(task, spec, record, scene);
@@ -54,17 +74,11 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
 
 }  // namespace
 
-bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
-  return evaluate_by_clock(std::chrono::steady_clock::now, task, spec, record, stop);
-}
-
-bool evaluate_by_clock(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
-                       const StopRequested& stop) {
-  if (steps_in_batches(spec)) return evaluate_batch({{task, spec, &record}}, stop);
-  const Stopwatch watch(now);
+static bool evaluate_alone(const Stopwatch& watch, const Task& task, const TaskSpec& spec, TaskRecord& record,
+                           const StopRequested& stop, const ObserveSystem& observe) {
   bool finished = true;
   try {
-    finished = simulate(task, spec, record, stop, watch);
+    finished = simulate(task, spec, record, stop, watch, observe);
   } catch (const InterruptedComputation&) {
     finished = !(stop && stop());
     if (finished) end_late(spec, record);
@@ -77,6 +91,21 @@ bool evaluate_by_clock(TimeSource now, const Task& task, const TaskSpec& spec, T
   }
   record.timing.elapsed_s[0] = watch.seconds();
   return finished;
+}
+
+bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
+  return evaluate_by_clock(std::chrono::steady_clock::now, task, spec, record, stop);
+}
+
+bool evaluate_by_clock(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
+                       const StopRequested& stop) {
+  if (steps_in_batches(spec)) return evaluate_batch({{task, spec, &record}}, stop);
+  return evaluate_alone(Stopwatch(now), task, spec, record, stop, nullptr);
+}
+
+bool evaluate_observed(const ObserveSystem& observe, const Task& task, const TaskSpec& spec, TaskRecord& record,
+                       const StopRequested& stop) {
+  return evaluate_alone(Stopwatch(), task, spec, record, stop, observe);
 }
 
 }  // namespace rodsweep

@@ -79,6 +79,9 @@ hdf5::File open_results(const fs::path& path) {
       throw FileError(
           fmt::format("{} holds a trained model, not results of simulations; `rodsweep info` shows it", path.native()));
     }
+    if (kind_of(file) == "systems")
+      throw FileError(fmt::format("{} holds linear systems, not results: read it with rodsweep.systems() in Python",
+                                  path.native()));
     check_version(file, path, schema_version);
   } catch (const Hdf5Error& failure) {
     throw damaged_error(path, failure.what());

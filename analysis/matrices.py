@@ -1,0 +1,48 @@
+#!/usr/bin/python3
+"""Linear systems of a simulation for other programs, from a file of `rodsweep systems`.
+
+  matrix-market   NAME.mtx, NAME_b.mtx, NAME_x.mtx
+  petsc           NAME.petsc: A, b and x, for MatLoad and VecLoad
+  npz             NAME.npz: A in blocks (scipy.sparse.bsr_matrix), b, x, and the rod's state
+
+NAME is step-STEP_newton-ITERATION_rod-ROD. x is the solution that moved the rod.
+"""
+
+import argparse
+import os
+
+from rodsweep.drawing import outputs
+from rodsweep.reading import commandline
+from rodsweep.reading.errors import UserError
+from rodsweep.reading.systems import Systems
+from rodsweep.writing import matrices
+
+EXAMPLES = """examples:
+  rodsweep systems results/demo.h5 12 --first             # results/demo-systems-12.h5
+  analysis/matrices.py results/demo-systems-12.h5 --format petsc -o systems"""
+
+
+def arguments():
+    made = argparse.ArgumentParser(description=__doc__, epilog=commandline.examples(EXAMPLES),
+                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made.add_argument("file", metavar="FILE", help="file of `rodsweep systems`")
+    made.add_argument("--format", choices=matrices.FORMATS, default="matrix-market", help="default: matrix-market")
+    made.add_argument("-o", "--output", metavar="FOLDER", required=True, help="folder for the files")
+    outputs.add_force(made)
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    os.makedirs(options.output, exist_ok=True)
+    with Systems(options.file) as systems:
+        for system in systems:
+            stem = os.path.join(options.output, f"step-{system.step}_newton-{system.newton}_rod-{system.rod}")
+            ending = {"matrix-market": ".mtx"}.get(options.format, f".{options.format}")
+            if os.path.exists(stem + ending) and not options.force:
+                raise UserError(f"{stem}{ending} exists; choose another folder with -o, or --force")
+            print("\n".join(matrices.FORMATS[options.format](system, stem)))
+
+
+if __name__ == "__main__":
+    commandline.run(main)

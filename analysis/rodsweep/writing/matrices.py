@@ -1,0 +1,43 @@
+"""Writes a linear system for other programs: Matrix Market, PETSc's binary format, or NumPy's archive."""
+
+import numpy as np
+import scipy.io
+
+PETSC_MATRIX, PETSC_VECTOR = 1211216, 1211214    # class ids of PETSc's files
+
+
+def matrix_market(system, stem):
+    """STEM.mtx and, as arrays, STEM_b.mtx and STEM_x.mtx. Entries have 17 digits, so doubles come back exactly."""
+    comment = f"rod {system.rod}, step {system.step}, Newton iteration {system.newton}, dt {system.dt_s:.17g} s"
+    paths = [f"{stem}{ending}.mtx" for ending in ("", "_b", "_x")]
+    scipy.io.mmwrite(paths[0], system.A.tocoo(), comment=comment, precision=17, symmetry="symmetric")
+    for path, vector in zip(paths[1:], (system.b, system.x)):
+        scipy.io.mmwrite(path, vector[:, None], comment=comment, precision=17)
+    return paths
+
+
+def petsc(system, stem):
+    """STEM.petsc: A, b and x, for MatLoad and VecLoad (32-bit integers, real numbers, big-endian)."""
+    a = system.A.tocsr()
+    a.sort_indices()
+    with open(f"{stem}.petsc", "wb") as file:
+        np.array([PETSC_MATRIX, *a.shape, a.nnz], ">i4").tofile(file)
+        np.diff(a.indptr).astype(">i4").tofile(file)
+        a.indices.astype(">i4").tofile(file)
+        a.data.astype(">f8").tofile(file)
+        for vector in (system.b, system.x):
+            np.array([PETSC_VECTOR, len(vector)], ">i4").tofile(file)
+            vector.astype(">f8").tofile(file)
+    return [f"{stem}.petsc"]
+
+
+def npz(system, stem):
+    """STEM.npz: A as data, indices, indptr of scipy.sparse.bsr_matrix, and all other arrays of the system."""
+    arrays = {name: getattr(system, name) for name in ("b", "x", "multipliers", "position_m", "orientation")}
+    place = {name: getattr(system, name) for name in ("rod", "step", "newton", "dt_s")}
+    np.savez(f"{stem}.npz", data=system.A.data, indices=system.A.indices, indptr=system.A.indptr, **arrays, **place,
+             **vars(system.of))
+    return [f"{stem}.npz"]
+
+
+FORMATS = {"matrix-market": matrix_market, "petsc": petsc, "npz": npz}

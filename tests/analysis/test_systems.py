@@ -1,0 +1,123 @@
+"""`rodsweep systems` and matrices.py: the systems of a task are those that it solved, in every format."""
+
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+
+import synthetic  # noqa: F401  (makes analysis/ importable)
+import h5py
+import numpy as np
+import rodsweep
+import scipy.io
+import scipy.sparse
+from running import run
+
+ROD = {"type": "bending_rod", "segments": 9, "length_m": {"uniform": [1, 2]}, "radius_m": 0.05, "density_kg_m3": 1000,
+       "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6}
+
+
+class Exported(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+
+    def program(self, *words, code=0):
+        done = subprocess.run([os.environ["RODSWEEP"], *words], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def swept(self, **keys):
+        """The file of a job."""
+        job = {"name": "s", "kind": "sweep", "samples": 2, "scene": ROD, "guesses": ["zero", "previous"],
+               "time": {"step_s": 0.02, "steps": 11, "newton_iterations": 3}, **keys}
+        with open("s.json", "w", encoding="utf-8") as file:
+            json.dump({key: value for key, value in job.items() if value is not None}, file)
+        self.program("run", "s.json", "-o", "s.h5")
+        return "s.h5"
+
+    def test_a_sweeps_systems_are_those_that_it_counted(self):
+        file = self.swept()
+        said = self.program("systems", file, "1", "--every", "5", "--first", "-o", "a.h5").stdout
+        self.assertIn("3 systems: a.h5", said)
+        self.assertEqual(run("matrices.py", "a.h5", "--format", "petsc", "-o", "petsc").code, 0)
+        with rodsweep.systems("a.h5") as systems, h5py.File(file) as results:
+            self.assertEqual([(system.step, system.newton, system.rod) for system in systems],
+                             [(0, 0, 0), (5, 0, 0), (10, 0, 0)])
+            self.assertEqual(systems.job()["name"], "s")
+            rows = slice(results["/tasks/first_solve"][1], results["/tasks/first_solve"][1] + results["/tasks/solves"][1])
+            step, newton = results["/solves/step"][rows], results["/solves/newton"][rows]
+            counted = results["/solves/iterations"][rows][(newton == 0) & (step % 5 == 0), 0, 1]    # zero, to 1e-2
+            found = [int(subprocess.check_output([os.environ["PETSC_SOLVE"],
+                                                  f"petsc/step-{system.step}_newton-0_rod-0.petsc"])) for system in systems]
+            self.assertEqual(found, counted.tolist())
+            for system in systems:
+                self.assertLess(np.linalg.norm(system.b - system.A @ system.x), 1e-11 * np.linalg.norm(system.b))
+                self.assertLess(abs(system.A - system.A.T).max(), 1e-12 * abs(system.A).max())
+
+    def test_all_newton_iterations_of_a_closed_loop_with_the_solution_that_moved_the_rod(self):
+        file = self.swept(evaluation="closed_loop", solve={"tolerance": 1e-2},
+                          time={"step_s": 0.02, "steps": 11, "newton_iterations": 3, "integrator": "bdf2"})
+        self.program("systems", file, "0", "-o", "a.h5")
+        with rodsweep.systems("a.h5") as systems:
+            self.assertEqual(len(systems), 6)
+            residuals = [np.linalg.norm(system.b - system.A @ system.x) / np.linalg.norm(system.b) for system in systems]
+            self.assertTrue(all(1e-5 < residual <= 1e-2 for residual in residuals), residuals)
+            self.assertEqual([round(system.dt_s, 9) for system in systems], [0.02] * 3 + [round(0.04 / 3, 9)] * 3)
+            first, second = systems[0], systems[1]
+            np.testing.assert_allclose(second.multipliers, first.multipliers + first.x)
+
+    def test_a_data_sets_systems_have_its_solutions_and_poses(self):
+        file = self.swept(kind="dataset", guesses=None, record={"systems": "all"})
+        self.program("systems", file, "1", "--every", "1", "-o", "a.h5")
+        with rodsweep.systems("a.h5") as systems, h5py.File(file) as data:
+            first, joints = data["/tasks/first_system"][1], 8
+            rows = data["/systems/step"][first:first + 33] >= 0
+            self.assertEqual(len(systems), np.count_nonzero(rows))
+            solutions = data["/systems/joints/solution"][:].reshape(2, 33, 6 * joints)[1][rows]
+            positions = data["/systems/segments/position_m"][:].reshape(2, 33, 9, 3)[1][rows]
+            for system, solution, position in zip(systems, solutions, positions):
+                np.testing.assert_allclose(system.x, solution, atol=1e-9 * abs(solution).max())
+                np.testing.assert_allclose(system.position_m, position, atol=1e-12)
+                self.assertLess(np.linalg.norm(system.b - system.A @ solution), 1e-10 * np.linalg.norm(system.b))
+
+    def test_formats_hold_the_same_numbers(self):
+        self.program("systems", self.swept(), "0", "--first", "-o", "a.h5")
+        for form in ("matrix-market", "npz"):
+            self.assertEqual(run("matrices.py", "a.h5", "--format", form, "-o", form).code, 0)
+        refused = run("matrices.py", "a.h5", "--format", "npz", "-o", "npz")
+        self.assertIn("exists", refused.stderr)
+        with rodsweep.systems("a.h5") as systems:
+            system = systems[1]
+            stem = f"step-{system.step}_newton-0_rod-0"
+            read = scipy.io.mmread(f"matrix-market/{stem}.mtx").toarray()
+            lower = np.tril(system.A.toarray())
+            self.assertEqual(abs(np.tril(read) - lower).max(), 0)
+            self.assertEqual(scipy.io.mmread(f"matrix-market/{stem}_b.mtx").ravel().tolist(), system.b.tolist())
+            with np.load(f"npz/{stem}.npz") as npz:
+                made = scipy.sparse.bsr_matrix((npz["data"], npz["indices"], npz["indptr"]))
+                self.assertEqual(abs(made - system.A).max(), 0)
+                self.assertEqual(npz["mass_kg"].tolist(), system.of.mass_kg.tolist())
+
+    def test_what_is_no_system_is_refused(self):
+        file = self.swept()
+        self.assertIn("must be from 0 to 1", self.program("systems", file, "2", code=2).stderr)
+        self.program("systems", file, "0")
+        self.assertIn("exists", self.program("systems", file, "0", code=2).stderr)
+        self.assertIn("holds linear systems, not results", self.program("info", "s-systems-0.h5", code=2).stderr)
+        with self.assertRaisesRegex(rodsweep.UserError, "holds no linear systems"):
+            rodsweep.systems(file)
+        os.remove("s-systems-0.h5")
+        alone = self.swept_without_systems()
+        self.assertIn("solves no linear system", self.program("systems", alone, "0", code=2).stderr)
+
+    def swept_without_systems(self):
+        os.remove("s.h5")
+        return self.swept(evaluation="closed_loop", guesses=None, solve={"method": "xpbd"})
+
+
+if __name__ == "__main__":
+    unittest.main()
