@@ -6,6 +6,7 @@
 #include "network/guess/knn_guess.hpp"
 #include "runner/experiment/models.hpp"
 #include "runner/experiment/training_sets.hpp"
+#include "solver/guess/plugin_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/ritz_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
@@ -46,6 +47,7 @@ struct Maker {
   Made operator()(const guess::Knn& g) const {
     return std::make_unique<KnnGuess>(shared_knn_set(g.data, g.simulations, g.inputs), scene, g.neighbours);
   }
+  Made operator()(const guess::Plugin& g) const { return std::make_unique<PluginGuess>(g.library, g.options, scene); }
   Made operator()(const guess::Oracle& g) const {
     return std::make_unique<OracleGuess>(scene, g.error, g.kind, task.seed);
   }

@@ -5,6 +5,7 @@
 #include "runner/experiment/guess_check.hpp"
 #include "runner/experiment/models.hpp"
 #include "runner/file/file_reading.hpp"
+#include "solver/guess/plugin_guess.hpp"
 
 namespace rodsweep {
 namespace {
@@ -16,6 +17,8 @@ bool ends_with(const std::string& text, const std::string& end) {
 void open_input(const InputFile& file) {
   if (ends_with(file.key_path, "model"))
     shared_model(file.path);
+  else if (ends_with(file.key_path, "library"))
+    Plugin{file.path};
   else if (!ends_with(file.key_path, "skeleton"))  // the plan reads skeletons
     DatasetReader reader(file.path);
 }
@@ -28,6 +31,8 @@ void check_inputs(const Job& job) {
     try {
       open_input(file);
     } catch (const FileError& error) {
+      throw job_error(job.path, file.key_path, error.what());
+    } catch (const PluginError& error) {
       throw job_error(job.path, file.key_path, error.what());
     }
   }

@@ -76,6 +76,15 @@ KeyTable<guess::Knn> knn_keys() {
   return table;
 }
 
+KeyTable<guess::Plugin> plugin_keys() {
+  using guess::Plugin;
+  KeyTable<Plugin> table;
+  table.required(file_key("library", "shared library that exports rodsweep_plugin() (docs/extending.md)"),
+                 &Plugin::library);
+  table.optional(text_key("options", "text that the library receives").at_most(4000), &Plugin::options);
+  return table;
+}
+
 KeyTable<guess::Oracle> oracle_keys() {
   using guess::Oracle;
   using Error = OracleGuess::Error;
@@ -162,6 +171,7 @@ const std::vector<Kind>& kinds() {
                              copingnet_keys()),
       kind<guess::Knn>("the solutions of the most similar systems of a data set, resampled by arc length and averaged",
                        knn_keys()),
+      kind<guess::Plugin>("a guess from a shared library of yours", plugin_keys()),
       kind<guess::Oracle>("the exact solution plus a random error", oracle_keys()),
       kind<guess::Guarded>("another guess, used only if its residual is small", guarded_keys()),
       kind<guess::Totals>(

@@ -73,6 +73,12 @@ struct Knn {
   KnnInputs inputs = KnnInputs::all;
 };
 
+struct Plugin {
+  static constexpr const char* name = "plugin";
+  std::filesystem::path library;
+  std::string options;
+};
+
 struct Oracle {
   static constexpr const char* name = "oracle";
   double error = 0.1;  ///< A-norm of the error, relative to that of the solution
@@ -104,7 +110,7 @@ struct Ritz : OfAnother {
 
 using GuessKind = std::variant<guess::Zero, guess::Previous, guess::Linear, guess::Quadratic, guess::Fischer,
                                guess::Subspace, guess::Deflation, guess::Regression, guess::CopingNet, guess::Knn,
-                               guess::Oracle, guess::Guarded, guess::Totals, guess::First, guess::Ritz>;
+                               guess::Plugin, guess::Oracle, guess::Guarded, guess::Totals, guess::First, guess::Ritz>;
 
 struct GuessSpec {
   GuessKind kind;

@@ -65,6 +65,7 @@ inline void read_value(const Place& at, bool& value) { value = at.number() != 0;
 inline void read_value(const Place& at, int& value) { value = static_cast<int>(at.number()); }
 inline void read_value(const Place& at, std::uint64_t& value) { value = static_cast<std::uint64_t>(at.number()); }
 inline void read_value(const Place& at, Vector3& value) { value = Vector3::Map(at.value().number); }
+inline void read_value(const Place& at, std::string& value) { value = at.text(); }
 inline void read_value(const Place& at, std::filesystem::path& file) { file = at.job().files.at(at.text()).path; }
 inline void read_value(const Place& at, std::optional<double>& value) {
   value.reset();
@@ -77,6 +78,7 @@ nlohmann::ordered_json written(const Key&, Value value) {
   return number(static_cast<double>(value));
 }
 inline nlohmann::ordered_json written(const Key&, bool value) { return value; }
+inline nlohmann::ordered_json written(const Key&, const std::string& value) { return value; }
 inline nlohmann::ordered_json written(const Key& key, const Vector3& value) {
   return {written(key, value.x()), written(key, value.y()), written(key, value.z())};
 }

@@ -23,6 +23,8 @@ class BlockMatrix {
   int row_begin(int row) const { return row_start_[static_cast<std::size_t>(row)]; }
   int row_end(int row) const { return row_start_[static_cast<std::size_t>(row) + 1]; }
   int column(int block) const { return columns_[static_cast<std::size_t>(block)]; }
+  const int* row_starts() const { return row_start_.data(); }  ///< first block of each row, and the end
+  const int* columns() const { return columns_.data(); }       ///< of each block
   int diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
   int find(int row, int column) const;  ///< index of the block; -1: not in the pattern
 

@@ -1,0 +1,61 @@
+/* A plug-in of rodsweep: an initial guess for CG, in any language that can export C functions.
+ *
+ * A shared library exports rodsweep_plugin(), and a job names it in its guesses: {"plugin": {"library": "libmine.so"}}.
+ * Every task makes an instance of its own. An error ends the task with its text: write it to `error`, with a zero at the
+ * end and at most RODSWEEP_ERROR_BYTES bytes, and return the value that says so. Numbers are doubles in SI units;
+ * pointers are valid during the call. docs/extending.md has an example. */
+#ifndef RODSWEEP_PLUGIN_H
+#define RODSWEEP_PLUGIN_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define RODSWEEP_PLUGIN_VERSION 1
+#define RODSWEEP_ERROR_BYTES 1024
+
+/* What does not change during a simulation. Joints are numbered as the block rows of A. */
+typedef struct rodsweep_rod {
+  int segments, joints;
+  const int* joint_segments;   /* [joints][2], the segments that a joint connects */
+  const double* compliance;    /* [joints][6] alpha in 1/J: across the rod (2), along it, bending (2), twisting */
+  const double* length_m;      /* [segments] */
+  const double* radius_m;      /* [segments] */
+  const double* mass_kg;       /* [segments] */
+} rodsweep_rod;
+
+/* A x = b of a Newton iteration. A is symmetric and positive definite, in blocks of 6 x 6 in compressed block rows, both
+ * triangles. x are increments of the joints' multipliers in kg m^2, in the joints' frames. */
+typedef struct rodsweep_system {
+  int rod, step, newton;          /* from 0 */
+  double dt_s;                    /* of A: with bdf2 two thirds of the time step */
+  int joints, segments;
+  const int* row_begin;           /* [joints + 1], first block of each block row */
+  const int* columns;             /* [row_begin[joints]], block column of each block */
+  const double* blocks;           /* entry (r, c) of block k: blocks[48 * k + 8 * c + r]; r of 6 and 7 are unused */
+  const double* b;                /* [joints][6] */
+  const double* multipliers;      /* [joints][6], of the rod before the solve */
+  const double* position_m;       /* [segments][3] */
+  const double* orientation;      /* [segments][4], quaternions x y z w */
+} rodsweep_system;
+
+typedef struct rodsweep_plugin_functions {
+  int version; /* RODSWEEP_PLUGIN_VERSION */
+  /* An instance for rods 0 to count - 1. `options` is the text of the job, "" without one. NULL: error. */
+  void* (*create)(const char* options, const rodsweep_rod* rods, int count, char* error);
+  void (*destroy)(void* instance);
+  /* Writes x0 [joints][6]. Returns 1, or 0 for a guess of zero, or -1: error. `products` is 0; set it to the number of
+   * products with A that were made. May be called several times for a system; then it must give the same x0. */
+  int (*propose)(void* instance, const rodsweep_system* system, double* x0, int* products, char* error);
+  /* Receives the solution of the system last proposed for. Returns 0, or -1: error. May be NULL. */
+  int (*accept)(void* instance, const rodsweep_system* system, const double* solution, char* error);
+} rodsweep_plugin_functions;
+
+/* Exported by the library. */
+const rodsweep_plugin_functions* rodsweep_plugin(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,84 @@
+/* The plug-in of the tests: the last solution of the same rod and Newton iteration. Its options ask for other things:
+ * "b": x0 = A b; "nan": x0 is not a number; "create", "propose", "accept": an error there. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver/guess/plugin.h"
+
+enum { most_rods = 16, most_newton = 16 };
+
+struct guess {
+  char options[32];
+  int joints[most_rods];
+  double* last[most_rods][most_newton];
+  int step[most_rods][most_newton];
+};
+
+static void* create(const char* options, const rodsweep_rod* rods, int count, char* error) {
+  struct guess* self = calloc(1, sizeof *self);
+  snprintf(self->options, sizeof self->options, "%s", options);
+  if (strcmp(options, "create") == 0 || count > most_rods) {
+    snprintf(error, RODSWEEP_ERROR_BYTES, "no guess for %d rods", count);
+    free(self);
+    return NULL;
+  }
+  for (int rod = 0; rod < count; ++rod) {
+    self->joints[rod] = rods[rod].joints;
+    for (int newton = 0; newton < most_newton; ++newton) {
+      self->last[rod][newton] = calloc((size_t)(6 * rods[rod].joints), sizeof(double));
+      self->step[rod][newton] = -2;
+    }
+  }
+  return self;
+}
+
+static void destroy(void* instance) {
+  struct guess* self = instance;
+  for (int rod = 0; rod < most_rods; ++rod)
+    for (int newton = 0; newton < most_newton; ++newton) free(self->last[rod][newton]);
+  free(self);
+}
+
+static void multiply(const rodsweep_system* system, const double* x, double* y) {
+  for (int i = 0; i < 6 * system->joints; ++i) y[i] = 0;
+  for (int row = 0; row < system->joints; ++row)
+    for (int k = system->row_begin[row]; k < system->row_begin[row + 1]; ++k)
+      for (int r = 0; r < 6; ++r)
+        for (int c = 0; c < 6; ++c)
+          y[6 * row + r] += system->blocks[48 * k + 8 * c + r] * x[6 * system->columns[k] + c];
+}
+
+static int propose(void* instance, const rodsweep_system* system, double* x0, int* products, char* error) {
+  struct guess* self = instance;
+  const size_t bytes = (size_t)(6 * system->joints) * sizeof(double);
+  if (strcmp(self->options, "propose") == 0) {
+    snprintf(error, RODSWEEP_ERROR_BYTES, "no guess in step %d", system->step);
+    return -1;
+  }
+  if (strcmp(self->options, "b") == 0) {
+    multiply(system, system->b, x0);
+    *products = 1;
+    return 1;
+  }
+  if (self->step[system->rod][system->newton] != system->step - 1) return 0;
+  memcpy(x0, self->last[system->rod][system->newton], bytes);
+  if (strcmp(self->options, "nan") == 0) x0[0] = 0.0 / 0.0;
+  return 1;
+}
+
+static int accept(void* instance, const rodsweep_system* system, const double* solution, char* error) {
+  struct guess* self = instance;
+  if (strcmp(self->options, "accept") == 0) {
+    snprintf(error, RODSWEEP_ERROR_BYTES, "the solution of step %d is not wanted", system->step);
+    return -1;
+  }
+  memcpy(self->last[system->rod][system->newton], solution, (size_t)(6 * system->joints) * sizeof(double));
+  self->step[system->rod][system->newton] = system->step;
+  return 0;
+}
+
+const rodsweep_plugin_functions* rodsweep_plugin(void) {
+  static const rodsweep_plugin_functions functions = {RODSWEEP_PLUGIN_VERSION, create, destroy, propose, accept};
+  return &functions;
+}
