@@ -39,6 +39,21 @@ class Plugin(unittest.TestCase):
             self.assertLess(iterations[1, 1], iterations[0, 1])
             self.assertEqual([label.decode() for label in file["/axes/guess"]], ["zero", "previous", "plugin mine"])
 
+    def test_the_example_of_the_page_works(self):
+        source = os.environ["SOURCE_DIR"]
+        with open(os.path.join(source, "docs", "extending.md"), encoding="utf-8") as page:
+            code = page.read().split("```c\n")[1].split("```")[0]
+        with open("half.c", "w", encoding="utf-8") as file:
+            file.write(code)
+        os.makedirs("include/rodsweep")
+        shutil.copy(os.path.join(source, "solver", "guess", "plugin.h"), "include/rodsweep")
+        subprocess.run(["cc", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-I", "include", "half.c", "-o", "half.so"],
+                       check=True)
+        self.program("run", self.job({"plugin": {"library": "half.so"}}), "-o", "s.h5")
+        with h5py.File("s.h5") as file:
+            iterations = file["/tasks/iterations_sum"][0]
+            self.assertLess(iterations[1, 0], iterations[0, 0])
+
     def test_its_error_is_that_of_the_task(self):
         self.program("run", self.job({"plugin": {"library": "mine.so", "options": "propose"}}), "-o", "s.h5", code=3)
         with h5py.File("s.h5") as file:
