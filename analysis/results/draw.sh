@@ -47,7 +47,11 @@ for study in spatial_bending spatial_helix; do
   table summary $study
 done
 pretrained=network/pretrained
-/usr/bin/python3 analysis/loss.py $pretrained/{rods,rods-large,bending-paper,bending-paper-best,helix-paper,helix-paper-best}.h5 -o $out >$out/pretrained.txt
+/usr/bin/python3 analysis/loss.py $pretrained/{rods,rods-large,bending-paper,bending-paper-best,helix-paper,helix-paper-best}.h5 \
+  -o $out >$out/pretrained.txt
+/usr/bin/python3 analysis/loss.py $pretrained/{knot,tree,falling,stiff}-paper-best.h5 $pretrained/seeds/*.h5 \
+  -o $out >$out/pretrained_scenes.txt
+rm $out/knot-paper-best-and-*-loss.png
 for study in temporal_bending temporal_helix; do
   figures temporal $study --tolerance 1e-2,1e-3,1e-4
   table summary $study
