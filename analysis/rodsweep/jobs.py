@@ -17,7 +17,7 @@ from rodsweep.reading.errors import SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.results import Results
 
-PATHS = ("data", "model", "skeleton")    # keys of input files (tested)
+PATHS = ("data", "library", "model", "skeleton")    # keys of input files (tested)
 SWEEPS = ("grid", "zip")                 # those of lists
 TASKS_FAILED, DIVERGED = 3, 9            # exit codes of a run with results
 
