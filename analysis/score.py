@@ -157,7 +157,7 @@ def figure(scenes, width_mm):
         for shift, (answer, look) in enumerate(looks.items()):
             levels = [level for level in score.LEVELS if (level, answer) in found]
             times = [intervals.median(1e3 * runs.time_s, runs.draws) for runs in (found[level, answer][1][0] for level in levels)]
-            x = [level * 1.08 ** (shift - 2) for level in levels]
+            x = [level * 1.08 ** (shift - len(answers) // 2) for level in levels]
             y, low, high = (np.array([float(getattr(time, part)) for time in times]) for part in ("value", "low", "high"))
             style.errorbar(axes, x, y, yerr=style.whiskers(y, low, high), **look.line(), linewidth=0.9, markersize=2.8,
                            elinewidth=0.5)
