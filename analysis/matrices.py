@@ -13,7 +13,6 @@ import os
 
 from rodsweep.drawing import outputs
 from rodsweep.reading import commandline
-from rodsweep.reading.errors import UserError
 from rodsweep.reading.systems import Systems
 from rodsweep.writing import matrices
 
@@ -34,14 +33,13 @@ def arguments():
 
 def main():
     options = arguments()
+    ending, write = matrices.FORMATS[options.format]
     os.makedirs(options.output, exist_ok=True)
     with Systems(options.file) as systems:
         for system in systems:
             stem = os.path.join(options.output, f"step-{system.step}_newton-{system.newton}_rod-{system.rod}")
-            ending = {"matrix-market": ".mtx"}.get(options.format, f".{options.format}")
-            if os.path.exists(stem + ending) and not options.force:
-                raise UserError(f"{stem}{ending} exists; choose another folder with -o, or --force")
-            print("\n".join(matrices.FORMATS[options.format](system, stem)))
+            outputs.check(stem + ending, options)
+            print("\n".join(write(system, stem)))
 
 
 if __name__ == "__main__":

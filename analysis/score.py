@@ -17,11 +17,10 @@ tuning draws. An error in parentheses is above its level on the test draws.
 import argparse
 import json
 import os
-import re
 
 import numpy as np
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import commandline, intervals, modelfile, score, texts
+from rodsweep.reading import commandline, intervals, job_paths, modelfile, score, texts
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -68,9 +67,9 @@ def main():
 
 def write_job(path, job, folder):
     """`folder` is the one to which the paths of `job` are relative."""
-    text = json.dumps(job, indent=1) + "\n"
     here = os.path.relpath(folder, os.path.dirname(os.path.abspath(path)))
-    text = re.sub(r'("model": )("[^"]+")', lambda found: found[1] + moved(found[2], here), text)
+    moved = job_paths.placed(job, lambda given: os.path.normpath(os.path.join(here, given)))
+    text = json.dumps(moved, indent=1) + "\n"
     if os.path.exists(path):
         with open(path, encoding="utf-8") as file:
             if file.read() != text:
@@ -78,11 +77,6 @@ def write_job(path, job, folder):
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
     print(path)
-
-
-def moved(path, folder):
-    """A path in JSON that was relative to a folder."""
-    return json.dumps(os.path.normpath(os.path.join(folder, json.loads(path))))
 
 
 def rows_of(chosen, runs):
@@ -99,8 +93,8 @@ def rows_of(chosen, runs):
 def models_of(file):
     """{name: path} of a job's models."""
     folder = os.path.dirname(file.runs()[-1]["job"])
-    paths = re.findall(r'"model": "([^"]+)"', json.dumps(file.job()))
-    return {os.path.basename(path).removesuffix(".h5"): os.path.join(folder, path) for path in paths}
+    return {os.path.basename(path).removesuffix(".h5"): os.path.join(folder, path)
+            for path in job_paths.given(file.job(), ("model",))}
 
 
 def trainings(models):

@@ -12,13 +12,11 @@ import numpy as np
 from rodsweep import program
 from rodsweep.program import JobError, JobWarning
 from rodsweep.progress import line
-from rodsweep.reading import measures
+from rodsweep.reading import job_paths, measures
 from rodsweep.reading.errors import SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.results import Results
 
-PATHS = ("data", "library", "model", "skeleton")    # keys of input files (tested)
-SWEEPS = ("grid", "zip")                 # those of lists
 TASKS_FAILED, DIVERGED = 3, 9            # exit codes of a run with results
 
 
@@ -129,11 +127,9 @@ class Job:
 
     def _is_complete(self, results, path):
         """Whether a file holds all tasks of the job at `path`. False with input files: the program compares these."""
-        inputs = []
-        _placed(self._values, inputs.append)
         try:
             with SweepFile(results) as file, open(path, "rb") as job:
-                return not inputs and bool(file.complete.all()) and file.job_text() == job.read()
+                return not job_paths.given(self._values) and bool(file.complete.all()) and file.job_text() == job.read()
         except SweepFileError:
             return False
 
@@ -153,7 +149,7 @@ class Job:
     def _text(self, place):
         """The JSON of the job, with place(path) for the paths of input files."""
         try:
-            return json.dumps(_placed(self._values, place), indent=2, ensure_ascii=False) + "\n"
+            return json.dumps(job_paths.placed(self._values, place), indent=2, ensure_ascii=False) + "\n"
         except (TypeError, ValueError) as error:
             raise JobError(f"{self.name}: {error}") from None
 
@@ -167,12 +163,3 @@ def _plain(value):
     if hasattr(value, "tolist"):    # of NumPy or pandas
         return _plain(value.tolist())
     return os.fspath(value) if isinstance(value, os.PathLike) else value
-
-
-def _placed(value, place, key=""):
-    """The value, which belongs to `key`, with place(path) for every path in it."""
-    if isinstance(value, dict):
-        return {inner: _placed(item, place, key if inner in SWEEPS else inner) for inner, item in value.items()}
-    if isinstance(value, list):
-        return [_placed(item, place, key) for item in value]
-    return place(value) if key in PATHS and isinstance(value, str) else value

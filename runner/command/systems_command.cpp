@@ -18,6 +18,7 @@ ExitCode execute(const SystemsOptions& options, Console& console) {
   const StoredTask stored = stored_task(options.file, options.task, 0);
   const fs::path output = options.output.value_or(file_beside(options.file, fmt::format("-systems-{}", options.task)));
   refuse_existing(output);
+  if (const std::string left = unfinished_text(output); !left.empty()) console.warn(left);
 
   SystemsFile systems;
   const ObserveSystem observe = [&](const Rod& rod, const LinearSystem& system, const SolvePosition& at,

@@ -25,7 +25,7 @@ struct SystemsOptions {
 inline constexpr const char* systems_help =
     "The job is read from FILE, not from its job file. Relative paths start at the folder of the job file. Nothing is\n"
     "kept in sweeps for this: the same task solves the same systems again.\n"
-    "In Python, rodsweep.systems(\"OUTPUT\") has A as a scipy matrix; rodsweep-export writes other formats.\n"
+    "In Python, rodsweep.systems(\"OUTPUT\") has A as a scipy matrix; rodsweep-matrices writes other formats.\n"
     "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop it within seconds; then nothing is written.\n\n"
     "Examples:\n"
     "  rodsweep systems results/demo.h5 12                      every tenth step into results/demo-systems-12.h5\n"

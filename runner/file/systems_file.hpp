@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "solver/linear/linear_system.hpp"
+#include "solver/rod/rod_arrays.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/step/projection.hpp"
 
@@ -34,10 +35,10 @@ class SystemsFile {
 
  private:
   struct Systems {
-    std::vector<std::int32_t> row_begin, columns, segments, step, newton;
-    std::vector<double> compliance, length, radius, mass, dt, blocks, b, x, lambda, position, orientation;
+    RodArrays rod;
+    std::vector<std::int32_t> row_begin, columns, step, newton;
+    std::vector<double> dt, blocks, b, x, lambda, position, orientation;
   };
-  static Systems of(const Rod& rod, const BlockMatrix& a);
 
   std::vector<Systems> rods_;
 };

@@ -224,11 +224,11 @@ static void check_condensed(const Point& point, const Job& job) {
                     fmt::format("\"{}\" is {}; must be \"true_residual\"", point.text("solve.norm"), not_allowed));
   const std::vector<GuessSpec> guesses = guess_specs(point, job);
   for (std::size_t i = 0; i < guesses.size(); ++i)
-    for (const char* name : {find_guess<guess::Deflation>(guesses[i]) ? guess::Deflation::name : "",
-                             find_guess<guess::Ritz>(guesses[i]) ? guess::Ritz::name : ""})
-      if (*name)
-        throw job_error(job.path, element("guesses", i),
-                        fmt::format("\"{}\" is {}; must be another guess, such as \"subspace\"", name, not_allowed));
+    if (const char* name = find_guess<guess::Deflation>(guesses[i]) ? guess::Deflation::name
+                           : find_guess<guess::Ritz>(guesses[i])    ? guess::Ritz::name
+                                                                    : nullptr)
+      throw job_error(job.path, element("guesses", i),
+                      fmt::format("\"{}\" is {}; must be another guess, such as \"subspace\"", name, not_allowed));
 }
 
 static void check_learned(const Point& point, const Job& job) {

@@ -4,35 +4,20 @@
 
 #include <algorithm>
 
+#include "solver/rod/rod_arrays.hpp"
+
 namespace rodsweep {
 namespace {
 
-/// A rod's constants in arrays, for the call of create().
-struct RodArrays {
-  std::vector<int> joint_segments;
-  std::vector<double> compliance, length, radius, mass;
-
-  explicit RodArrays(const Rod& rod) {
-    for (const Joint& joint : rod.joints) {
-      joint_segments.insert(joint_segments.end(), {joint.a, joint.b});
-      compliance.insert(compliance.end(), joint.compliance.begin(), joint.compliance.end());
-    }
-    for (const Segment& segment : rod.segments) {
-      length.push_back(segment.length_m);
-      radius.push_back(segment.radius_m);
-      mass.push_back(segment.mass);
-    }
-  }
-  rodsweep_rod view() const {
-    return {static_cast<int>(length.size()),
-            static_cast<int>(joint_segments.size() / 2),
-            joint_segments.data(),
-            compliance.data(),
-            length.data(),
-            radius.data(),
-            mass.data()};
-  }
-};
+rodsweep_rod view(const RodArrays& rod) {
+  return {static_cast<int>(rod.length_m.size()),
+          static_cast<int>(rod.joint_segments.size() / 2),
+          rod.joint_segments.data(),
+          rod.compliance.data(),
+          rod.length_m.data(),
+          rod.radius_m.data(),
+          rod.mass_kg.data()};
+}
 
 }  // namespace
 
@@ -65,7 +50,7 @@ PluginGuess::PluginGuess(const std::filesystem::path& library, const std::string
   std::vector<RodArrays> arrays;
   for (const Rod& rod : scene.rods) arrays.emplace_back(rod);
   std::vector<rodsweep_rod> rods;
-  for (const RodArrays& rod : arrays) rods.push_back(rod.view());
+  for (const RodArrays& rod : arrays) rods.push_back(view(rod));
   instance_.reset(
       plugin_.functions().create(options.c_str(), rods.data(), static_cast<int>(rods.size()), error_.data()));
   if (!instance_) throw plugin_.error(error_.c_str());

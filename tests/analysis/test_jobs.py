@@ -18,6 +18,7 @@ import synthetic
 import numpy as np
 import rodsweep
 from rodsweep import jobs, program, progress
+from rodsweep.reading import job_paths
 
 ROOT = Path(synthetic.ANALYSIS).resolve().parent
 ROD = {"type": "bending_rod", "segments": 6, "length_m": rodsweep.uniform(1, 5), "radius_m": 0.05,
@@ -224,7 +225,7 @@ class Parts(InAFolder):
 
     def test_keys_of_input_files_are_those_of_the_program(self):
         sources = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("runner/job/*.cpp"))
-        self.assertEqual({*re.findall(r'file_key\("(\w+)"', sources), "data"}, set(jobs.PATHS))    # data: of trainings
+        self.assertEqual({*re.findall(r'file_key\("(\w+)"', sources), "data"}, set(job_paths.PATHS))    # data: of trainings
 
     def test_a_terminal_and_a_notebook_show_the_bar(self):
         with unittest.mock.patch.dict(os.environ, TERM="xterm"), unittest.mock.patch("sys.stderr", Bar()) as terminal:

@@ -137,7 +137,9 @@ class Files(unittest.TestCase):
                              {setting.text(): setting.solve for setting in found if setting in set(chosen.values())})
             self.assertEqual(chosen[0.1, "CG from zero"].solve["max_iterations"], 500)
             for answer in ("CG, learned guess", "CG, learned preconditioner"):
-                self.assertEqual(len(score.trainings(chosen[0.1, answer], found)), 2, answer)
+                way = chosen[0.1, answer].way    # which guess is the fastest with a preconditioner depends on the clock
+                learned = way.guess.startswith("copingnet") + way.preconditioner.startswith("learned")
+                self.assertEqual(len(score.trainings(chosen[0.1, answer], found)), 2**learned, way)
         done = run("score.py", self.tuning, "-o", self.folder.name, "--format", "png")
         self.assertEqual(done.code, 0, done.stderr)
         blocks = [block.splitlines() for block in done.stdout.split("\n\n\n")[0].split("\n\n")]

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from rodsweep.reading import accuracy, combinations, intervals, measures
+from rodsweep.reading import accuracy, combinations, intervals, job_paths, measures
 from rodsweep.reading.errors import KeyNotFound
 
 LEVELS = (1e-1, 1e-2, 1e-3, 1e-4)
@@ -159,10 +159,9 @@ def _with_seeds(entries, folder):
     """Each entry, with copies that have the other seeds of its model."""
     made = []
     for entry in entries:
-        text = json.dumps(entry)
-        model = next(iter(re.findall(r'"model": "([^"]+)"', text)), None)
-        beside = [os.path.relpath(path, folder or ".") for path in seeds_of(os.path.join(folder, model))] if model else []
-        made += [entry, *(json.loads(text.replace(json.dumps(model), json.dumps(other))) for other in beside)]
+        beside = [other for model in job_paths.given(entry, ("model",)) for other in seeds_of(os.path.join(folder, model))]
+        made += [entry, *(job_paths.placed(entry, lambda _, other=other: os.path.relpath(other, folder or "."), ("model",))
+                          for other in beside)]
     return made
 
 

@@ -40,4 +40,4 @@ def npz(system, stem):
     return [f"{stem}.npz"]
 
 
-FORMATS = {"matrix-market": matrix_market, "petsc": petsc, "npz": npz}
+FORMATS = {"matrix-market": (".mtx", matrix_market), "petsc": (".petsc", petsc), "npz": (".npz", npz)}    # first file, writer

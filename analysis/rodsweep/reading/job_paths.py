@@ -1,0 +1,20 @@
+"""Paths of input files in a parsed job, or in a part of it."""
+
+PATHS = ("data", "library", "model", "skeleton")    # their keys (tested)
+SWEEPS = ("grid", "zip")                            # a path may stand in a list of these
+
+
+def placed(value, place, keys=PATHS, key=""):
+    """The value, which belongs to `key`, with place(path) for every path of these keys in it."""
+    if isinstance(value, dict):
+        return {inner: placed(item, place, keys, key if inner in SWEEPS else inner) for inner, item in value.items()}
+    if isinstance(value, list):
+        return [placed(item, place, keys, key) for item in value]
+    return place(value) if key in keys and isinstance(value, str) else value
+
+
+def given(value, keys=PATHS):
+    """The paths of these keys in a value, each once."""
+    found = {}
+    placed(value, lambda path: found.setdefault(path, path), keys)
+    return list(found)
