@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runner/command/next_line.hpp"
+#include "runner/text/beside_program.hpp"
 
 namespace rodsweep {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/terminal/text.hpp"
+#include "runner/text/beside_program.hpp"
 
 namespace rodsweep {
 namespace {
@@ -27,14 +28,6 @@ std::string word_of(const fs::path& path) {
 }
 
 }  // namespace
-
-fs::path beside_program(std::initializer_list<fs::path> places) {
-  std::error_code error;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const fs::path& place : places)
-    if (const fs::path path = (folder / place).lexically_normal(); fs::exists(path, error)) return path;
-  return {};
-}
 
 int ranks_for(int workers) { return workers > 1 ? workers + 1 : 1; }
 

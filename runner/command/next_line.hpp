@@ -2,16 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
 #include <string>
 
 #include "runner/command/run_command.hpp"
 
 namespace rodsweep {
-
-/// The first of these paths, relative to the folder of this program, that exists; empty if none does: the places of a file
-/// in an installation and in the source tree.
-std::filesystem::path beside_program(std::initializer_list<std::filesystem::path> places);
 
 /// Ranks of a sweep with this many workers: one more for the master, which sleeps; 1 for a single worker.
 int ranks_for(int workers);

@@ -15,6 +15,7 @@
 #include "runner/experiment/inputs.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/terminal/text.hpp"
+#include "runner/text/beside_program.hpp"
 
 namespace rodsweep {
 

@@ -5,12 +5,13 @@
 #include "network/guess/coping_net_guess.hpp"
 #include "network/guess/knn_guess.hpp"
 #include "runner/experiment/models.hpp"
+#include "runner/experiment/plugin_sources.hpp"
 #include "runner/experiment/training_sets.hpp"
-#include "solver/guess/plugin_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/ritz_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
+#include "solver/plugin/plugin_guess.hpp"
 
 namespace rodsweep {
 namespace {
@@ -47,7 +48,10 @@ struct Maker {
   Made operator()(const guess::Knn& g) const {
     return std::make_unique<KnnGuess>(shared_knn_set(g.data, g.simulations, g.inputs), scene, g.neighbours);
   }
-  Made operator()(const guess::Plugin& g) const { return std::make_unique<PluginGuess>(g.library, g.options, scene); }
+  Made operator()(const guess::Plugin& g) const { return std::make_unique<PluginGuess>(plugin_source(g), scene); }
+  Made operator()(const guess::Python& g) const {
+    return std::make_unique<PluginGuess>(plugin_source(g, PythonClass::guess), scene);
+  }
   Made operator()(const guess::Oracle& g) const {
     return std::make_unique<OracleGuess>(scene, g.error, g.kind, task.seed);
   }

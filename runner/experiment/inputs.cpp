@@ -4,8 +4,8 @@
 #include "runner/experiment/factor_check.hpp"
 #include "runner/experiment/guess_check.hpp"
 #include "runner/experiment/models.hpp"
+#include "runner/experiment/plugin_sources.hpp"
 #include "runner/file/file_reading.hpp"
-#include "solver/guess/plugin_guess.hpp"
 
 namespace rodsweep {
 namespace {
@@ -18,7 +18,11 @@ void open_input(const InputFile& file) {
   if (ends_with(file.key_path, "model"))
     shared_model(file.path);
   else if (ends_with(file.key_path, "library"))
-    Plugin{file.path};
+    Plugin(plugin_source({file.path, ""}));
+  else if (ends_with(file.key_path, "python.file"))
+    PluginInstance(plugin_source({file.path, ""}, PythonClass::guess), nullptr, 0);
+  else if (ends_with(file.key_path, "python_preconditioner.file"))
+    PluginInstance(plugin_source({file.path, ""}, PythonClass::preconditioner), nullptr, 0);
   else if (!ends_with(file.key_path, "skeleton"))  // the plan reads skeletons
     DatasetReader reader(file.path);
 }

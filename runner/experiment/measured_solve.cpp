@@ -10,11 +10,13 @@
 #include "runner/experiment/guesses.hpp"
 #include "runner/experiment/median.hpp"
 #include "runner/experiment/models.hpp"
+#include "runner/experiment/plugin_sources.hpp"
 #include "runner/experiment/solve_rows.hpp"
 #include "runner/experiment/timed_guess.hpp"
 #include "runner/plan/plan.hpp"
 #include "solver/cg/cg_solver.hpp"
 #include "solver/linear/rounding_level.hpp"
+#include "solver/plugin/plugin_preconditioner.hpp"
 #include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
@@ -54,8 +56,8 @@ struct MeasuredSolve::RodSolvers {
   VectorX exact, x, residual;
   std::optional<SolveOutcome> exact_outcome;  ///< of `exact`; none until it is computed for this system
 
-  RodSolvers(const Rod& rod, const LinearSystem& system, const TaskSpec& spec, std::size_t guess_count)
-      : tight(make_cg(rod, system, settings(rod, system, spec, spec.solve.norm))),
+  RodSolvers(const Rod& rod, int index, const LinearSystem& system, const TaskSpec& spec, std::size_t guess_count)
+      : tight(make_cg(rod, system, settings(rod, index, system, spec, spec.solve.norm))),
         direct_s(static_cast<std::size_t>(spec.solve.timing_repeats)),
         iterations(tolerance_ladder().size()),
         iterations_other(iterations),
@@ -65,19 +67,28 @@ struct MeasuredSolve::RodSolvers {
     tight->keep_history(true);
     if (has_other_norm(spec)) {
       const Norm other = spec.solve.norm == Norm::natural ? Norm::true_residual : Norm::natural;
-      tight_other = make_cg(rod, system, settings(rod, system, spec, other));
+      tight_other = make_cg(rod, system, settings(rod, index, system, spec, other));
       tight_other->keep_history(true);
     }
     for (std::size_t g = 0; g < guess_count; ++g)
-      guesses.push_back({make_cg(rod, system, settings(rod, system, spec, spec.solve.norm)), exact, {}, direct_s, {}});
+      guesses.push_back(
+          {make_cg(rod, system, settings(rod, index, system, spec, spec.solve.norm)), exact, {}, direct_s, {}});
   }
 
-  static CgSettings settings(const Rod& rod, const LinearSystem& system, const TaskSpec& spec, Norm norm) {
+  static CgSettings settings(const Rod& rod, int index, const LinearSystem& system, const TaskSpec& spec, Norm norm) {
     CgSettings made{spec.solve.preconditioner, norm, spec.solve.max_iterations, spec.solve.fill_levels};
+    const auto plugin = [&](const PluginSource& source) {
+      made.make_given = [&rod, index, &system, source] {
+        return std::make_unique<PluginPreconditioner>(source, rod, index, system);
+      };
+    };
     if (spec.solve.preconditioner == Preconditioner::learned)
-      made.make_learned = [&rod, &system, model = shared_model(spec.solve.learned->model)] {
+      made.make_given = [&rod, &system, model = shared_model(spec.solve.learned->model)] {
         return std::make_unique<FactorPreconditioner>(model, rod, system);
       };
+    if (spec.solve.preconditioner == Preconditioner::plugin) plugin(plugin_source(*spec.solve.plugin));
+    if (spec.solve.preconditioner == Preconditioner::python)
+      plugin(plugin_source(*spec.solve.python, PythonClass::preconditioner));
     return made;
   }
 
@@ -119,7 +130,8 @@ MeasuredSolve::~MeasuredSolve() = default;
 MeasuredSolve::RodSolvers& MeasuredSolve::solvers_for(const LinearSystem& system, int rod) {
   std::unique_ptr<RodSolvers>& solvers = solvers_[static_cast<std::size_t>(rod)];
   if (!solvers)
-    solvers = std::make_unique<RodSolvers>(scene_.rods[static_cast<std::size_t>(rod)], system, spec_, guesses_.size());
+    solvers =
+        std::make_unique<RodSolvers>(scene_.rods[static_cast<std::size_t>(rod)], rod, system, spec_, guesses_.size());
   return *solvers;
 }
 

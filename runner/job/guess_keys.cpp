@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runner/job/key_table.hpp"
+#include "runner/job/plugin_keys.hpp"
 #include "runner/job/sweep.hpp"
 
 namespace rodsweep {
@@ -73,15 +74,6 @@ KeyTable<guess::Knn> knn_keys() {
                             "of the paper's network")
                      .labelled_if_changed(""),
                  Words<KnnInputs>{{"all", KnnInputs::all}, {"shape", KnnInputs::shape}}, &Knn::inputs);
-  return table;
-}
-
-KeyTable<guess::Plugin> plugin_keys() {
-  using guess::Plugin;
-  KeyTable<Plugin> table;
-  table.required(file_key("library", "shared library that exports rodsweep_plugin() (docs/extending.md)"),
-                 &Plugin::library);
-  table.optional(text_key("options", "text that the library receives").at_most(4000), &Plugin::options);
   return table;
 }
 
@@ -171,7 +163,8 @@ const std::vector<Kind>& kinds() {
                              copingnet_keys()),
       kind<guess::Knn>("the solutions of the most similar systems of a data set, resampled by arc length and averaged",
                        knn_keys()),
-      kind<guess::Plugin>("a guess from a shared library of yours", plugin_keys()),
+      kind<guess::Plugin>("a guess from a shared library of yours", plugin_keys<guess::Plugin>()),
+      kind<guess::Python>("a guess from a Python file of yours", python_keys<guess::Python>()),
       kind<guess::Oracle>("the exact solution plus a random error", oracle_keys()),
       kind<guess::Guarded>("another guess, used only if its residual is small", guarded_keys()),
       kind<guess::Totals>(

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "network/guess/knn.hpp"
+#include "runner/job/plugin_file.hpp"
 #include "solver/guess/initial_guess.hpp"
 
 namespace rodsweep {
@@ -73,10 +74,11 @@ struct Knn {
   KnnInputs inputs = KnnInputs::all;
 };
 
-struct Plugin {
+struct Plugin : PluginFile {
   static constexpr const char* name = "plugin";
-  std::filesystem::path library;
-  std::string options;
+};
+struct Python : PythonFile {
+  static constexpr const char* name = "python";
 };
 
 struct Oracle {
@@ -108,9 +110,10 @@ struct Ritz : OfAnother {
 
 }  // namespace guess
 
-using GuessKind = std::variant<guess::Zero, guess::Previous, guess::Linear, guess::Quadratic, guess::Fischer,
-                               guess::Subspace, guess::Deflation, guess::Regression, guess::CopingNet, guess::Knn,
-                               guess::Plugin, guess::Oracle, guess::Guarded, guess::Totals, guess::First, guess::Ritz>;
+using GuessKind =
+    std::variant<guess::Zero, guess::Previous, guess::Linear, guess::Quadratic, guess::Fischer, guess::Subspace,
+                 guess::Deflation, guess::Regression, guess::CopingNet, guess::Knn, guess::Plugin, guess::Python,
+                 guess::Oracle, guess::Guarded, guess::Totals, guess::First, guess::Ritz>;
 
 struct GuessSpec {
   GuessKind kind;

@@ -74,6 +74,8 @@ struct SolveSpec {
   int timing_repeats = 1;                 ///< times are medians over this many repeats of guess, solve and direct solve
   std::filesystem::path model;            ///< end_to_end, state_network
   std::optional<LearnedPreconditioner> learned;  ///< with Preconditioner::learned
+  std::optional<PluginFile> plugin;              ///< with Preconditioner::plugin
+  std::optional<PythonFile> python;              ///< with Preconditioner::python
   PbdStiffness stiffness;                        ///< pbd
   Reference reference = Reference::direct;       ///< cg
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "runner/job/guess_keys.hpp"
 #include "runner/job/key_table.hpp"
+#include "runner/job/plugin_keys.hpp"
 #include "runner/text/key_path.hpp"
 
 namespace rodsweep {
@@ -123,7 +125,7 @@ KeyTable<SolveSpec> solve_keys() {
                             "preconditioner of cg. icc: no fill; block_icc: some levels of fill; cholesky: all fill; "
                             "lagged_cholesky: cholesky, reused for some steps; condensed: cg with block_icc on the "
                             "motions of the segments where rods cross, all others eliminated; learned: the factors of "
-                            "learned_preconditioner"),
+                            "learned_preconditioner; plugin, python: your own"),
                  Words<Preconditioner>{{"none", Preconditioner::none},
                                        {"jacobi", Preconditioner::jacobi},
                                        {"point_block_jacobi", Preconditioner::point_block_jacobi},
@@ -132,10 +134,18 @@ KeyTable<SolveSpec> solve_keys() {
                                        {"cholesky", Preconditioner::cholesky},
                                        {"lagged_cholesky", Preconditioner::lagged_cholesky},
                                        {"condensed", Preconditioner::condensed},
-                                       {"learned", Preconditioner::learned}},
+                                       {"learned", Preconditioner::learned},
+                                       {"plugin", Preconditioner::plugin},
+                                       {"python", Preconditioner::python}},
                  &SolveSpec::preconditioner);
   table.optional(object_key("learned_preconditioner", "the model of the preconditioner \"learned\"").or_word("none"),
                  learned_preconditioner_keys(), &SolveSpec::learned);
+  table.optional(
+      object_key("plugin_preconditioner", "the shared library of the preconditioner \"plugin\"").or_word("none"),
+      plugin_keys<PluginFile>(), &SolveSpec::plugin);
+  table.optional(
+      object_key("python_preconditioner", "the Python file of the preconditioner \"python\"").or_word("none"),
+      python_keys<PythonFile>(), &SolveSpec::python);
   table.optional(integer_key("fill_levels", "block_icc: levels of fill").from(0, 100), &SolveSpec::fill_levels);
   table.optional(integer_key("lag_steps",
                              "time steps between set-ups of the preconditioner, from the first Newton iteration's "
@@ -231,16 +241,23 @@ static void check_condensed(const Point& point, const Job& job) {
                       fmt::format("\"{}\" is {}; must be another guess, such as \"subspace\"", name, not_allowed));
 }
 
-static void check_learned(const Point& point, const Job& job) {
-  if (method(point) == Method::cg && point.text("solve.preconditioner") == "learned" &&
-      !point.has("solve.learned_preconditioner.model"))
-    throw job_error(job.path, "solve.learned_preconditioner",
-                    "missing: the preconditioner \"learned\" needs the model of a train job: {\"model\": FILE}");
+/// Checks that the file of a preconditioner is given.
+static void check_preconditioner(const Point& point, const Job& job) {
+  if (method(point) != Method::cg) return;
+  const std::string& word = point.text("solve.preconditioner");
+  for (const auto& [of, file, what] :
+       {std::tuple("learned", "model", "the model of a train job"), std::tuple("plugin", "library", "a shared library"),
+        std::tuple("python", "file", "a Python file")}) {
+    const std::string key = fmt::format("solve.{}_preconditioner", of);
+    if (word == of && !point.has(member(key, file)))
+      throw job_error(job.path, key,
+                      fmt::format("missing: the preconditioner \"{}\" needs {}: {{\"{}\": FILE}}", of, what, file));
+  }
 }
 
 void check_method(const Point& point, const Job& job) {
   check_condensed(point, job);
-  check_learned(point, job);
+  check_preconditioner(point, job);
   if (const Method own = method(point);
       point.has("time.balance") && point.number("time.balance") != 0 && own != Method::cg && own != Method::direct)
     throw job_error(job.path, "time.balance",

@@ -52,7 +52,9 @@ std::unique_ptr<BlockPreconditioner> block_preconditioner(Preconditioner kind, c
     case Preconditioner::point_block_jacobi:
     case Preconditioner::icc:
     case Preconditioner::condensed:
-    case Preconditioner::learned: break;
+    case Preconditioner::learned:
+    case Preconditioner::plugin:
+    case Preconditioner::python: break;
     case Preconditioner::block_icc: return std::make_unique<Incomplete>(pattern, fill_levels);
     case Preconditioner::cholesky:
     case Preconditioner::lagged_cholesky: return std::make_unique<Complete>(pattern);

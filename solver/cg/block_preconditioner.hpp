@@ -11,7 +11,8 @@ namespace rodsweep {
 /// PETSc, joints in the rod's order (exact on an unbranched chain); block_icc: incomplete with `fill_levels` of fill,
 /// in reverse Cuthill-McKee order and single precision (incomplete_factor.hpp); cholesky: complete (block_factor.hpp);
 /// lagged_cholesky: the same, reused by the caller for some steps; condensed: struts by elimination, the matrix of
-/// their ends by block_icc (condensed_cg.hpp); learned: made by the caller (CgSettings::make_learned).
+/// their ends by block_icc (condensed_cg.hpp); learned, plugin, python: made by the caller
+/// (CgSettings::make_given).
 enum class Preconditioner {
   none,
   jacobi,
@@ -21,7 +22,9 @@ enum class Preconditioner {
   cholesky,
   lagged_cholesky,
   condensed,
-  learned
+  learned,
+  plugin,
+  python
 };
 
 /// Default of block_icc and condensed.
@@ -30,9 +33,9 @@ inline constexpr int default_fill_levels = 3;
 class BlockPreconditioner {
  public:
   virtual ~BlockPreconditioner() = default;
-  /// Sets up for a matrix with the pattern of construction. Returns false if it is not positive definite.
+  /// Sets up for a matrix with the pattern of construction. Returns false if it is not positive definite. May throw.
   virtual bool set_up(const BlockMatrix& a) = 0;
-  /// z = P^-1 r. Allocates nothing.
+  /// z = P^-1 r. Allocates nothing. May throw.
   virtual void apply(const double* r, double* z) = 0;
 };
 

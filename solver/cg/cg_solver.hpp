@@ -24,9 +24,9 @@ enum class Norm { true_residual, natural };
 struct CgSettings {
   Preconditioner preconditioner = Preconditioner::jacobi;
   Norm norm = Norm::true_residual;
-  int max_iterations = 0;                 ///< 0: ten times the unknowns, at most 32767
-  int fill_levels = default_fill_levels;  ///< of block_icc and condensed
-  std::function<std::unique_ptr<BlockPreconditioner>()> make_learned{};
+  int max_iterations = 0;                                              ///< 0: ten times the unknowns, at most 32767
+  int fill_levels = default_fill_levels;                               ///< of block_icc and condensed
+  std::function<std::unique_ptr<BlockPreconditioner>()> make_given{};  ///< learned, plugin, python
 };
 
 /// The limit for a system. Iterations are stored in 16 bits.

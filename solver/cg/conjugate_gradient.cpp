@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -49,16 +51,33 @@ PCType pc_type(Preconditioner p) {
     case Preconditioner::block_icc:
     case Preconditioner::cholesky:
     case Preconditioner::lagged_cholesky:
-    case Preconditioner::learned: return PCSHELL;
+    case Preconditioner::learned:
+    case Preconditioner::plugin:
+    case Preconditioner::python: return PCSHELL;
     case Preconditioner::condensed: break;  // see make_cg()
   }
   return PCNONE;
 }
 
-PetscErrorCode apply_own(PC pc, Vec r, Vec z) noexcept {
+/// A preconditioner that is not PETSc's.
+struct Shell {
+  std::unique_ptr<BlockPreconditioner> preconditioner;  ///< null: PETSc's
+  bool positive = true;                                 ///< at the last set-up
+  std::exception_ptr failure;                           ///< of its application: PETSc's frames pass no exceptions
+};
+
+PetscErrorCode apply_shell(PC pc, Vec r, Vec z) noexcept {
   void* context = nullptr;
   if (const PetscErrorCode error = PCShellGetContext(pc, &context)) return error;
-  static_cast<BlockPreconditioner*>(context)->apply(vector_data(r), vector_data(z));
+  Shell& shell = *static_cast<Shell*>(context);
+  try {
+    shell.preconditioner->apply(vector_data(r), vector_data(z));
+  } catch (...) {
+    shell.failure = std::current_exception();
+    PetscInt size = 0;
+    if (const PetscErrorCode error = VecGetLocalSize(z, &size)) return error;
+    std::fill_n(vector_data(z), size, std::numeric_limits<double>::quiet_NaN());  // ends KSPSolve
+  }
   return entries_changed(z);
 }
 
@@ -90,9 +109,8 @@ struct ConjugateGradient::Impl {
   Mat product = nullptr;
   Mat entries = nullptr;  ///< copy of the blocks for PETSc's preconditioners that need them; else null
   KSP ksp = nullptr;
-  std::unique_ptr<BlockPreconditioner> own;  ///< null: PETSc's
-  bool own_positive = true;                  ///< at the last set-up
-  PC plain = nullptr, shell = nullptr;       ///< the preconditioner; with projections, once used
+  Shell own;
+  PC plain = nullptr, shell = nullptr;  ///< the preconditioner; with projections, once used
   Projected projected;
   Vec b = nullptr, x = nullptr, scratch = nullptr;
   VectorX residual;
@@ -112,6 +130,7 @@ struct ConjugateGradient::Impl {
   void copy_entries();
   void refresh();
   void use(Deflation* deflation);
+  void check_applications();
   const VectorX& first_residual(const VectorX& rhs, const VectorX& guess, const CgStart& start);
   CgReport without_iterations(SolveOutcome outcome, double norm);
 };
@@ -137,9 +156,8 @@ void ConjugateGradient::Impl::create() {
 
   if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
   if (settings.preconditioner == Preconditioner::icc) create_entries(true);
-  own = settings.preconditioner == Preconditioner::learned
-            ? settings.make_learned()
-            : block_preconditioner(settings.preconditioner, a, settings.fill_levels);
+  own.preconditioner = settings.make_given ? settings.make_given()
+                                           : block_preconditioner(settings.preconditioner, a, settings.fill_levels);
 
   petsc_check(KSPCreate(PETSC_COMM_SELF, &ksp), "KSPCreate");
   petsc_check(KSPSetType(ksp, KSPCG), "KSPSetType");
@@ -148,9 +166,9 @@ void ConjugateGradient::Impl::create() {
   petsc_check(KSPGetPC(ksp, &plain), "KSPGetPC");
   petsc_check(PetscObjectReference(reinterpret_cast<PetscObject>(plain)), "PetscObjectReference");
   petsc_check(PCSetType(plain, pc_type(settings.preconditioner)), "PCSetType");
-  if (own) {
-    petsc_check(PCShellSetContext(plain, own.get()), "PCShellSetContext");
-    petsc_check(PCShellSetApply(plain, apply_own), "PCShellSetApply");
+  if (own.preconditioner) {
+    petsc_check(PCShellSetContext(plain, &own), "PCShellSetContext");
+    petsc_check(PCShellSetApply(plain, apply_shell), "PCShellSetApply");
   }
   petsc_check(KSPSetOperators(ksp, product, entries ? entries : product), "KSPSetOperators");
   petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, settings.max_iterations), "KSPSetTolerances");
@@ -193,7 +211,7 @@ void ConjugateGradient::Impl::create_entries(bool symmetric) {
 void ConjugateGradient::Impl::refresh() {
   if (!stale) return;
   stale = false;
-  if (own) own_positive = own->set_up(a);
+  if (own.preconditioner) own.positive = own.preconditioner->set_up(a);
   if (entries) copy_entries();
   // Tells PETSc that the entries are new; without it the old preconditioner is kept silently.
   Mat changed = entries ? entries : product;
@@ -214,6 +232,11 @@ void ConjugateGradient::Impl::use(Deflation* deflation) {
     petsc_check(KSPSetPC(ksp, deflation ? shell : plain), "KSPSetPC");
   projected.inner = plain;
   projected.deflation = deflation;
+}
+
+/// Throws what an application of the preconditioner threw.
+void ConjugateGradient::Impl::check_applications() {
+  if (own.failure) std::rethrow_exception(std::exchange(own.failure, nullptr));
 }
 
 /// b - A x, with a product if it is not known.
@@ -271,11 +294,12 @@ CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, const CgStart& s
   if (s.settings.norm == Norm::true_residual && norm <= tolerance * reference)
     return s.without_iterations(SolveOutcome::converged, norm);
   s.refresh();
-  if (!s.own_positive) return s.without_iterations(SolveOutcome::indefinite, norm);
+  if (!s.own.positive) return s.without_iterations(SolveOutcome::indefinite, norm);
   s.use(deflation);
   s.target = {tolerance, reference, work_of_iteration(s.a)};
   copy(first, s.b);
   petsc_check(KSPSolve(s.ksp, s.b, s.x), "KSPSolve");
+  s.check_applications();
   check_interrupted(0);
   add(s.x, x);
 
@@ -296,12 +320,13 @@ double ConjugateGradient::norm_of(const VectorX& b) {
   Impl& s = *impl_;
   if (s.settings.norm == Norm::true_residual) return b.norm();
   s.refresh();
-  if (!s.own_positive) return std::numeric_limits<double>::quiet_NaN();
+  if (!s.own.positive) return std::numeric_limits<double>::quiet_NaN();
   copy(b, s.b);
   PetscScalar square = 0;
   s.use(nullptr);
   petsc_check(KSPSetUp(s.ksp), "KSPSetUp");
   petsc_check(PCApply(s.plain, s.b, s.scratch), "PCApply");
+  s.check_applications();
   petsc_check(VecDot(s.b, s.scratch, &square), "VecDot");
   return std::sqrt(square);
 }

@@ -224,7 +224,7 @@ class Parts(InAFolder):
         self.assertEqual((job.values["seed"], other.values["seed"], "guesses" in other.values), (7, 8, False))
 
     def test_keys_of_input_files_are_those_of_the_program(self):
-        sources = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("runner/job/*.cpp"))
+        sources = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("runner/job/*.?pp"))
         self.assertEqual({*re.findall(r'file_key\("(\w+)"', sources), "data"}, set(job_paths.PATHS))    # data: of trainings
 
     def test_a_terminal_and_a_notebook_show_the_bar(self):

@@ -46,7 +46,7 @@ class Plugin(unittest.TestCase):
         with open("half.c", "w", encoding="utf-8") as file:
             file.write(code)
         os.makedirs("include/rodsweep")
-        shutil.copy(os.path.join(source, "solver", "guess", "plugin.h"), "include/rodsweep")
+        shutil.copy(os.path.join(source, "solver", "plugin", "plugin.h"), "include/rodsweep")
         subprocess.run(["cc", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-I", "include", "half.c", "-o", "half.so"],
                        check=True)
         self.program("run", self.job({"plugin": {"library": "half.so"}}), "-o", "s.h5")

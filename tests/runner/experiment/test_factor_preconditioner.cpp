@@ -10,7 +10,7 @@ namespace rodsweep::test_factor_preconditioner {
 
 CgSettings settings(const std::shared_ptr<const Model>& model, const Rod& rod, const LinearSystem& system) {
   CgSettings made{Preconditioner::learned};
-  made.make_learned = [&, model] { return std::make_unique<FactorPreconditioner>(model, rod, system); };
+  made.make_given = [&, model] { return std::make_unique<FactorPreconditioner>(model, rod, system); };
   return made;
 }
 

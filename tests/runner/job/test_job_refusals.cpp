@@ -247,7 +247,8 @@ TEST_CASE("guesses that make no guess axis are refused") {
   const std::string zero = "needs \"zero\" in this list", text = "must be a string of 1 to 60 characters on one line";
   const std::string names =
       "must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"fischer\", \"subspace\", \"deflation\", "
-      "\"regression\", \"copingnet\", \"knn\", \"plugin\", \"oracle\", \"guarded\", \"totals\", \"first\", \"ritz\", "
+      "\"regression\", \"copingnet\", \"knn\", \"plugin\", \"python\", \"oracle\", \"guarded\", \"totals\", \"first\", "
+      "\"ritz\", "
       "or an object "
       "such as "
       "{\"oracle\": {\"error\": 0.1}}";

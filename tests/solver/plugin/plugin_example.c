@@ -1,10 +1,11 @@
-/* The plug-in of the tests: the last solution of the same rod and Newton iteration. Its options ask for other things:
- * "b": x0 = A b; "nan": x0 is not a number; "create", "propose", "accept": an error there. */
+/* The plug-in of the tests: the last solution of the same rod and Newton iteration, and the diagonal as preconditioner. Its
+ * options ask for other things: "b": x0 = A b; "nan": x0 is not a number; "create", "propose", "accept", "set_up", "apply":
+ * an error there; "none": no preconditioner. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "solver/guess/plugin.h"
+#include "solver/plugin/plugin.h"
 
 enum { most_rods = 16, most_newton = 16 };
 
@@ -13,6 +14,7 @@ struct guess {
   int joints[most_rods];
   double* last[most_rods][most_newton];
   int step[most_rods][most_newton];
+  double* inverse_diagonal;
 };
 
 static void* create(const char* options, const rodsweep_rod* rods, int count, char* error) {
@@ -37,6 +39,7 @@ static void destroy(void* instance) {
   struct guess* self = instance;
   for (int rod = 0; rod < most_rods; ++rod)
     for (int newton = 0; newton < most_newton; ++newton) free(self->last[rod][newton]);
+  free(self->inverse_diagonal);
   free(self);
 }
 
@@ -78,7 +81,37 @@ static int accept(void* instance, const rodsweep_system* system, const double* s
   return 0;
 }
 
+static int set_up(void* instance, const rodsweep_system* system, char* error) {
+  struct guess* self = instance;
+  if (strcmp(self->options, "set_up") == 0) {
+    snprintf(error, RODSWEEP_ERROR_BYTES, "no preconditioner in step %d", system->step);
+    return -1;
+  }
+  if (!self->inverse_diagonal) self->inverse_diagonal = calloc((size_t)(6 * system->joints), sizeof(double));
+  for (int row = 0; row < system->joints; ++row)
+    for (int k = system->row_begin[row]; k < system->row_begin[row + 1]; ++k)
+      for (int r = 0; r < 6 && system->columns[k] == row; ++r)
+        self->inverse_diagonal[6 * row + r] = 1 / system->blocks[48 * k + 9 * r];
+  return strcmp(self->options, "none") != 0;
+}
+
+static int apply(void* instance, const double* r, double* z, char* error) {
+  const struct guess* self = instance;
+  if (strcmp(self->options, "apply") == 0) {
+    snprintf(error, RODSWEEP_ERROR_BYTES, "not applied");
+    return -1;
+  }
+  for (int i = 0; i < 6 * self->joints[0]; ++i) z[i] = r[i] * self->inverse_diagonal[i];
+  return 0;
+}
+
 const rodsweep_plugin_functions* rodsweep_plugin(void) {
-  static const rodsweep_plugin_functions functions = {RODSWEEP_PLUGIN_VERSION, create, destroy, propose, accept};
+  static const rodsweep_plugin_functions functions = {.version = RODSWEEP_PLUGIN_VERSION,
+                                                      .create = create,
+                                                      .destroy = destroy,
+                                                      .propose = propose,
+                                                      .accept = accept,
+                                                      .set_up = set_up,
+                                                      .apply = apply};
   return &functions;
 }

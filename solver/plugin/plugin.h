@@ -1,9 +1,10 @@
-/* A plug-in of rodsweep: an initial guess for CG, in any language that can export C functions.
+/* A plug-in of rodsweep: an initial guess for CG or a preconditioner, in any language that can export C functions.
  *
- * A shared library exports rodsweep_plugin(), and a job names it in its guesses: {"plugin": {"library": "libmine.so"}}.
- * Every task makes an instance of its own. An error ends the task with its text: write it to `error`, with a zero at the
- * end and at most RODSWEEP_ERROR_BYTES bytes, and return the value that says so. Numbers are doubles in SI units;
- * pointers are valid during the call. docs/extending.md has an example. */
+ * A shared library exports rodsweep_plugin(), and a job names it in its guesses, {"plugin": {"library": "libmine.so"}},
+ * or as {"preconditioner": "own", "own_preconditioner": {"library": "libmine.so"}} in its "solve". Every task makes
+ * instances of its own. An error ends the task with its text: write it to `error`, with a zero at the end and at most
+ * RODSWEEP_ERROR_BYTES bytes, and return the value that says so. Numbers are doubles in SI units; pointers are valid
+ * during the call. docs/extending.md has an example. */
 #ifndef RODSWEEP_PLUGIN_H
 #define RODSWEEP_PLUGIN_H
 
@@ -13,6 +14,11 @@ extern "C" {
 
 #define RODSWEEP_PLUGIN_VERSION 1
 #define RODSWEEP_ERROR_BYTES 1024
+#ifdef __GNUC__
+#define RODSWEEP_EXPORT __attribute__((visibility("default")))
+#else
+#define RODSWEEP_EXPORT
+#endif
 
 /* What does not change during a simulation. Joints are numbered as the block rows of A. */
 typedef struct rodsweep_rod {
@@ -27,7 +33,7 @@ typedef struct rodsweep_rod {
 /* A x = b of a Newton iteration. A is symmetric and positive definite, in blocks of 6 x 6 in compressed block rows, both
  * triangles. x are increments of the joints' multipliers in kg m^2, in the joints' frames. */
 typedef struct rodsweep_system {
-  int rod, step, newton;          /* from 0 */
+  int rod, step, newton;          /* from 0; step and newton are -1 for a preconditioner */
   double dt_s;                    /* of A: with bdf2 two thirds of the time step */
   int joints, segments;
   const int* row_begin;           /* [joints + 1], first block of each block row */
@@ -41,7 +47,8 @@ typedef struct rodsweep_system {
 
 typedef struct rodsweep_plugin_functions {
   int version; /* RODSWEEP_PLUGIN_VERSION */
-  /* An instance for rods 0 to count - 1. `options` is the text of the job, "" without one. NULL: error. */
+  /* An instance for rods 0 to count - 1; a preconditioner has one rod. `options` is the text of the job, "" without one.
+   * NULL: error. */
   void* (*create)(const char* options, const rodsweep_rod* rods, int count, char* error);
   void (*destroy)(void* instance);
   /* Writes x0 [joints][6]. Returns 1, or 0 for a guess of zero, or -1: error. `products` is 0; set it to the number of
@@ -49,10 +56,15 @@ typedef struct rodsweep_plugin_functions {
   int (*propose)(void* instance, const rodsweep_system* system, double* x0, int* products, char* error);
   /* Receives the solution of the system last proposed for. Returns 0, or -1: error. May be NULL. */
   int (*accept)(void* instance, const rodsweep_system* system, const double* solution, char* error);
+  /* Prepares a preconditioner P for A. Returns 1, or 0 if there is none for this A (CG ends as `indefinite`), or -1:
+   * error. Here and in apply, a guess has NULL; a preconditioner has NULL in propose. */
+  int (*set_up)(void* instance, const rodsweep_system* system, char* error);
+  /* Writes z = P^-1 r [joints][6], which must be linear, symmetric and positive definite. Returns 0, or -1: error. */
+  int (*apply)(void* instance, const double* r, double* z, char* error);
 } rodsweep_plugin_functions;
 
 /* Exported by the library. */
-const rodsweep_plugin_functions* rodsweep_plugin(void);
+RODSWEEP_EXPORT const rodsweep_plugin_functions* rodsweep_plugin(void);
 
 #ifdef __cplusplus
 }

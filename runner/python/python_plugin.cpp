@@ -1,0 +1,293 @@
+// Guesses and preconditioners in Python (docs/own-guess.md): a plug-in (solver/plugin/plugin.h) that embeds the
+// interpreter, so that the program itself does not need Python.
+//
+// Its options are three parts, each on a line but the last: the class, Guess or Preconditioner; the file that has it;
+// the text of the job. Python receives copies, since it may keep them longer than their memory exists. The arrays have
+// the names and shapes of rodsweep.systems().
+#include <dlfcn.h>
+#include <omp.h>
+#include <pybind11/embed.h>
+#include <pybind11/numpy.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver/plugin/plugin.h"
+
+namespace py = pybind11;
+using namespace py::literals;
+
+namespace {
+
+using Array = py::array_t<double>;
+using Shape = std::vector<py::ssize_t>;
+
+template <class T>
+py::array_t<T> copied(const T* data, const Shape& shape) {
+  return py::array_t<T>(shape, data);
+}
+
+py::object rod_of(const rodsweep_rod& rod) {
+  return py::module_::import("types").attr("SimpleNamespace")(
+      "segments"_a = copied(rod.joint_segments, {rod.joints, 2}),
+      "compliance_per_j"_a = copied(rod.compliance, {rod.joints, 6}),
+      "length_m"_a = copied(rod.length_m, {rod.segments}), "radius_m"_a = copied(rod.radius_m, {rod.segments}),
+      "mass_kg"_a = copied(rod.mass_kg, {rod.segments}));
+}
+
+/// What Python sees of a system. Each attribute is copied when it is read.
+class System {
+ public:
+  System(const rodsweep_system& system, py::object rod) : system_(&system), rod_(std::move(rod)) {}
+  /// The call that it was passed to has ended.
+  void end() { system_ = nullptr; }
+
+  const rodsweep_system& now() const {
+    if (!system_)
+      throw std::runtime_error("a system can be read during the call that it is passed to: keep its arrays instead");
+    return *system_;
+  }
+  py::object rod() const { return rod_; }
+  Array joint_vector(const double* data) const { return copied(data, {6 * now().joints}); }
+  Array blocks() const {
+    const int count = now().row_begin[now().joints];
+    Array blocks(Shape{count, 6, 6});
+    auto to = blocks.mutable_unchecked<3>();
+    for (int k = 0; k < count; ++k)
+      for (int r = 0; r < 6; ++r)
+        for (int c = 0; c < 6; ++c) to(k, r, c) = now().blocks[48 * k + 8 * c + r];
+    return blocks;
+  }
+  py::object matrix() const {
+    const int joints = now().joints;
+    return py::module_::import("scipy.sparse")
+        .attr("bsr_matrix")(py::make_tuple(blocks(), copied(now().columns, {now().row_begin[joints]}),
+                                           copied(now().row_begin, {joints + 1})),
+                            "shape"_a = py::make_tuple(6 * joints, 6 * joints));
+  }
+  Array orientation() const {
+    const int segments = now().segments;
+    Array wxyz(Shape{segments, 4});
+    auto to = wxyz.mutable_unchecked<2>();
+    for (int s = 0; s < segments; ++s)
+      for (int k = 0; k < 4; ++k) to(s, k) = now().orientation[4 * s + (k + 3) % 4];
+    return wxyz;
+  }
+
+ private:
+  const rodsweep_system* system_;
+  py::object rod_;
+};
+
+PYBIND11_EMBEDDED_MODULE(rodsweep_system, module) {
+  py::class_<System>(module, "System")
+      .def_property_readonly("of", &System::rod)
+      .def_property_readonly("rod", [](const System& s) { return s.now().rod; })
+      .def_property_readonly("step", [](const System& s) { return s.now().step; })
+      .def_property_readonly("newton", [](const System& s) { return s.now().newton; })
+      .def_property_readonly("dt_s", [](const System& s) { return s.now().dt_s; })
+      .def_property_readonly("A", &System::matrix)
+      .def_property_readonly("blocks", &System::blocks)
+      .def_property_readonly("b", [](const System& s) { return s.joint_vector(s.now().b); })
+      .def_property_readonly("multipliers", [](const System& s) { return s.joint_vector(s.now().multipliers); })
+      .def_property_readonly("position_m",
+                             [](const System& s) {
+                               return copied(s.now().position_m, {s.now().segments, 3});
+                             })
+      .def_property_readonly("orientation", &System::orientation);
+}
+
+/// Starts the interpreter, once in a process.
+void start_python() {
+  if (Py_IsInitialized()) return;
+  // numpy's libraries look for Python's symbols among all, but the program has loaded this one privately.
+  if (Dl_info info; dladdr(reinterpret_cast<void*>(&Py_IsInitialized), &info))
+    dlopen(info.dli_fname, RTLD_NOW | RTLD_GLOBAL | RTLD_NOLOAD);
+  // Workers share the cores.
+  if (!std::getenv("OMP_NUM_THREADS")) {
+    setenv("OMP_NUM_THREADS", "1", 0);
+    omp_set_num_threads(1);
+  }
+  PyConfig config;
+  PyConfig_InitPythonConfig(&config);
+  config.install_signal_handlers = 0;  // the program has its own
+  config.write_bytecode = 0;           // nothing beside the user's files
+  if (const char* environment = std::getenv("VIRTUAL_ENV"))
+    PyConfig_SetBytesString(&config, &config.program_name, (std::string(environment) + "/bin/python").c_str());
+  py::initialize_interpreter(&config, 0, nullptr, false);
+  py::module_::import("rodsweep_system");
+  py::module_ sys = py::module_::import("sys");
+  sys.attr("stdout") = sys.attr("stderr");  // standard output has the program's results
+  PyEval_SaveThread();
+}
+
+/// "ValueError: TEXT (my_guess.py:12 in propose)"
+std::string text_of(const py::error_already_set& error) {
+  const auto text = [](const py::handle& object) { return py::str(object).cast<std::string>(); };
+  std::string places;
+  if (error.trace())
+    for (const py::handle frame : py::module_::import("traceback").attr("extract_tb")(error.trace())) {
+      const std::string file = text(frame.attr("filename"));
+      if (file.empty() || file.front() == '<') continue;  // of importlib
+      places += (places.empty() ? "" : ", ") + file.substr(file.rfind('/') + 1) + ':' + text(frame.attr("lineno")) +
+                " in " + text(frame.attr("name"));
+    }
+  const std::string what = text(error.type().attr("__name__")) + ": " + text(error.value());
+  return places.empty() ? what : what + " (" + places + ')';
+}
+
+void write(std::string text, char* error) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (text.size() >= RODSWEEP_ERROR_BYTES) {
+    std::size_t end = RODSWEEP_ERROR_BYTES - 1;
+    while ((static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // no part of a character
+    text.resize(end);
+  }
+  std::snprintf(error, RODSWEEP_ERROR_BYTES, "%s", text.c_str());
+}
+
+/// What `call` returns, or `failed` with the text of its exception.
+template <class Result, class Call>
+Result guarded(Result failed, char* error, const Call& call) {
+  py::gil_scoped_acquire lock;
+  try {
+    return call();
+  } catch (const py::error_already_set& raised) {
+    write(text_of(raised), error);
+  } catch (const std::exception& raised) {
+    write(raised.what(), error);
+  }
+  return failed;
+}
+
+/// Copies an array that Python returned.
+void read(const py::object& returned, double* to, int size, const std::string& function) {
+  const py::array array = py::module_::import("numpy").attr("asarray")(returned);
+  const auto said = [&](const py::handle& what) {
+    return function + " returned an array of " + py::str(what).cast<std::string>();
+  };
+  if (array.dtype().kind() != 'f') throw std::invalid_argument(said(array.dtype()) + "; must be of float64 or float32");
+  const bool flat = array.ndim() == 1 && array.shape(0) == size;
+  if (!flat && !(array.ndim() == 2 && array.shape(0) == size / 6 && array.shape(1) == 6))
+    throw std::invalid_argument(said(array.attr("shape")) + "; must be of (" + std::to_string(size) + ",) or (" +
+                                std::to_string(size / 6) + ", 6)");
+  const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>(array);
+  std::copy_n(values.data(), size, to);
+}
+
+struct Instance {
+  py::object own;
+  std::vector<py::object> rods;
+  int joints = 0;  ///< of the preconditioner's rod
+
+  /// Calls a method with a system that lasts as long as the call.
+  template <class... More>
+  py::object call(const char* method, const rodsweep_system& system, const More&... more) const {
+    const std::size_t rod = rods.size() == 1 ? 0 : static_cast<std::size_t>(system.rod);
+    py::object made = py::cast(System(system, rods[rod]));
+    struct Ended {
+      System& system;
+      ~Ended() { system.end(); }
+    } ended{made.cast<System&>()};
+    return own.attr(method)(made, more...);
+  }
+};
+
+py::object module_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/') + 1;
+  const std::string folder = path.substr(0, slash), name = path.substr(slash, path.rfind('.') - slash);
+  py::list places = py::module_::import("sys").attr("path");
+  if (!places.contains(folder)) places.insert(0, folder);
+  py::module_ util = py::module_::import("importlib.util");
+  py::object spec = util.attr("spec_from_file_location")(name, path);
+  if (spec.is_none()) throw std::invalid_argument("the name of a Python file ends in .py");
+  py::object module = util.attr("module_from_spec")(spec);
+  py::module_::import("sys").attr("modules")[name.c_str()] = module;
+  spec.attr("loader").attr("exec_module")(module);
+  return module;
+}
+
+/// Without rods: loads the file and checks it.
+void* create(const char* options, const rodsweep_rod* rods, int count, char* error) {
+  const std::string all = options;
+  const std::size_t first = all.find('\n'), second = all.find('\n', first + 1);
+  const std::string name = all.substr(0, first), path = all.substr(first + 1, second - first - 1);
+  try {
+    start_python();
+  } catch (const std::exception& raised) {
+    write(raised.what(), error);
+    return nullptr;
+  }
+  return guarded<void*>(nullptr, error, [&]() -> void* {
+    const py::object module = module_of(path);
+    const char* method = name == "Guess" ? "propose" : "apply";
+    const py::object own = py::getattr(module, name.c_str(), py::none());
+    if (!py::hasattr(own, method)) throw std::invalid_argument("has no class " + name + " with " + method + "()");
+    auto made = std::make_unique<Instance>();
+    for (int rod = 0; rod < count; ++rod) made->rods.push_back(rod_of(rods[rod]));
+    if (count > 0) {
+      made->joints = rods[0].joints;
+      py::list list;
+      for (const py::object& rod : made->rods) list.append(rod);
+      made->own = own(list, all.substr(second + 1));
+    }
+    return made.release();
+  });
+}
+
+void destroy(void* instance) {
+  py::gil_scoped_acquire lock;
+  delete static_cast<Instance*>(instance);
+}
+
+int propose(void* instance, const rodsweep_system* system, double* x0, int* products, char* error) {
+  return guarded(-1, error, [&] {
+    py::object x = static_cast<Instance*>(instance)->call("propose", *system);
+    if (x.is_none()) return 0;
+    if (py::isinstance<py::tuple>(x) && py::len(x) == 2) {
+      *products = x[py::int_(1)].cast<int>();
+      x = x[py::int_(0)];
+    }
+    read(x, x0, 6 * system->joints, "propose()");
+    return 1;
+  });
+}
+
+int accept(void* instance, const rodsweep_system* system, const double* solution, char* error) {
+  return guarded(-1, error, [&] {
+    const auto* self = static_cast<Instance*>(instance);
+    if (py::hasattr(self->own, "accept")) self->call("accept", *system, copied(solution, {6 * system->joints}));
+    return 0;
+  });
+}
+
+int set_up(void* instance, const rodsweep_system* system, char* error) {
+  return guarded(-1, error, [&] {
+    const auto* self = static_cast<Instance*>(instance);
+    if (!py::hasattr(self->own, "set_up")) return 1;
+    const py::object usable = self->call("set_up", *system);
+    return usable.is_none() || usable.cast<bool>() ? 1 : 0;
+  });
+}
+
+int apply(void* instance, const double* r, double* z, char* error) {
+  return guarded(-1, error, [&] {
+    const auto* self = static_cast<Instance*>(instance);
+    read(self->own.attr("apply")(copied(r, {6 * self->joints})), z, 6 * self->joints, "apply()");
+    return 0;
+  });
+}
+
+}  // namespace
+
+const rodsweep_plugin_functions* rodsweep_plugin() {
+  static const rodsweep_plugin_functions functions{
+      RODSWEEP_PLUGIN_VERSION, create, destroy, propose, accept, set_up, apply};
+  return &functions;
+}

@@ -1,0 +1,20 @@
+#include "solver/plugin/plugin_preconditioner.hpp"
+
+namespace rodsweep {
+
+PluginPreconditioner::PluginPreconditioner(const PluginSource& source, const Rod& rod, int index,
+                                           const LinearSystem& system)
+    : rod_(rod), index_(index), system_(system), instance_(source, &rod, 1) {
+  if (!instance_.functions().set_up || !instance_.functions().apply) throw instance_.error("lacks set_up or apply");
+}
+
+bool PluginPreconditioner::set_up(const BlockMatrix&) {
+  const rodsweep_system system = plugin_system(rod_, system_, {-1, -1, index_});
+  return instance_.checked(instance_.functions().set_up(instance_.get(), &system, instance_.error())) > 0;
+}
+
+void PluginPreconditioner::apply(const double* r, double* z) {
+  instance_.checked(instance_.functions().apply(instance_.get(), r, z, instance_.error()));
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,98 @@
+// A guess and a preconditioner from a shared library: what they see, what they return, and their errors.
+#include <catch2/catch.hpp>
+
+#include "solver/cg/cg_solver.hpp"
+#include "solver/plugin/plugin_guess.hpp"
+#include "solver/plugin/plugin_preconditioner.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep::test_plugin {
+
+using Catch::Contains, test::OneRod;
+
+PluginSource example(const std::string& options) { return {PLUGIN_EXAMPLE, options, "plug-in example"}; }
+
+CgReport solve(OneRod& one, const PluginSource& source, VectorX& x, Norm norm = Norm::true_residual) {
+  CgSettings settings{Preconditioner::plugin, norm};
+  settings.make_given = [&] {
+    return std::make_unique<PluginPreconditioner>(source, one.scene.rods[0], 0, one.system);
+  };
+  const auto cg = make_cg(one.scene.rods[0], one.system, settings);
+  return cg->solve(one.system.rhs(), x, CgStart(false), 1e-6, cg->norm_of(one.system.rhs()));
+}
+
+TEST_CASE("a plug-in that keeps the last solution proposes what `previous` does") {
+  OneRod one;
+  test::Random random(4);
+  PluginGuess plugin(example(""), one.scene);
+  ExtrapolationGuess previous(one.scene, 3, 1);
+  VectorX x0(one.size()), expected(one.size());
+  for (int step : {0, 1, 2, 4, 5})
+    for (int newton = 0; newton < 3; ++newton) {
+      const SolvePosition at{step, newton, 0};
+      INFO(step << ' ' << newton);
+      const Proposal proposal = plugin.propose(one.system, at, x0);
+      CHECK(proposal.nonzero == previous.propose(one.system, at, expected).nonzero);
+      CHECK(proposal.products == 0);
+      CHECK(x0 == expected);
+      const VectorX solution = random.entries(one.size());
+      plugin.accept(at, solution);
+      previous.accept(at, solution);
+    }
+}
+
+TEST_CASE("a plug-in sees A and b, and its products are counted") {
+  OneRod one;
+  PluginGuess plugin(example("b"), one.scene);
+  VectorX x0(one.size());
+  const Proposal proposal = plugin.propose(one.system, {0, 0, 0}, x0);
+  CHECK(proposal.products == 1);
+  CHECK(proposal.start_products() == 2);
+  CHECK((x0 - one.a * one.system.rhs()).norm() < 1e-13 * x0.norm());
+}
+
+TEST_CASE("what a plug-in says of an error is the text of the exception") {
+  OneRod one;
+  VectorX x0(one.size());
+  CHECK_THROWS_WITH(PluginGuess(example("create"), one.scene),
+                    Contains("plug-in example: ") && Contains("no guess for 1 rods"));
+  PluginGuess proposes(example("propose"), one.scene), accepts(example("accept"), one.scene),
+      nan(example("nan"), one.scene);
+  CHECK_THROWS_WITH(proposes.propose(one.system, {7, 0, 0}, x0), Contains("no guess in step 7"));
+  accepts.propose(one.system, {3, 0, 0}, x0);
+  CHECK_THROWS_WITH(accepts.accept({3, 0, 0}, x0), Contains("the solution of step 3 is not wanted"));
+  nan.propose(one.system, {0, 0, 0}, x0);
+  nan.accept({0, 0, 0}, x0);
+  CHECK_THROWS_WITH(nan.propose(one.system, {1, 0, 0}, x0), Contains("not finite"));
+}
+
+TEST_CASE("with the diagonal from a plug-in CG takes the iterations of Jacobi, in both norms") {
+  for (const Norm norm : {Norm::true_residual, Norm::natural}) {
+    OneRod one;
+    VectorX x = VectorX::Zero(one.size()), expected = x;
+    const CgReport own = solve(one, example(""), x, norm);
+    const auto jacobi = make_cg(one.scene.rods[0], one.system, {Preconditioner::jacobi, norm});
+    const CgReport report =
+        jacobi->solve(one.system.rhs(), expected, CgStart(false), 1e-6, jacobi->norm_of(one.system.rhs()));
+    CHECK(own.outcome == SolveOutcome::converged);
+    CHECK(own.iterations == report.iterations);
+    CHECK((x - expected).norm() < 1e-12 * expected.norm());
+  }
+}
+
+TEST_CASE("errors of a preconditioner leave CG as exceptions, and none for this matrix ends it as indefinite") {
+  OneRod one;
+  VectorX x = VectorX::Zero(one.size());
+  CHECK_THROWS_WITH(solve(one, example("set_up"), x), Contains("plug-in example: no preconditioner in step -1"));
+  for (const Norm norm : {Norm::true_residual, Norm::natural})
+    CHECK_THROWS_WITH(solve(one, example("apply"), x, norm), Contains("plug-in example: not applied"));
+  CHECK(solve(one, example("none"), x).outcome == SolveOutcome::indefinite);
+}
+
+TEST_CASE("a library that is none, or exports no plug-in, is refused") {
+  OneRod one;
+  CHECK_THROWS_WITH(Plugin({"missing.so", "", "mine"}), Contains("mine: cannot be loaded"));
+  CHECK_THROWS_WITH(Plugin({NO_PLUGIN, "", "mine"}), Contains("mine: does not export rodsweep_plugin()"));
+}
+
+}  // namespace rodsweep::test_plugin
