@@ -45,7 +45,7 @@ help:
 	@echo 'make archive       results of make score and make studies, models and tables, with checksums: results/archive.tar'
 	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
 	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (an hour and a half; likewise)'
-	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind), draw their films (installs ffmpeg, for MP4)'
+	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind, curves), draw their films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow tests: physics, faults, the report in a browser; unit tests under the sanitizers'
 	@echo 'make test-cluster  sweeps under a real Slurm and over hosts that die or are cut off, on this machine (as root, some minutes)'
@@ -131,10 +131,10 @@ ablation: build
 	@analysis/results/draw.sh results ablation
 
 # By job and task. A film of the forest would take as long as all of these. Existing films are kept.
-picture_jobs = pictures side_by_side lattice_sag lattice_dropped lattice_pressed net_wind
+picture_jobs = pictures side_by_side lattice_sag lattice_dropped lattice_pressed net_wind twisted pulled
 pictures = pictures:0:helix:along pictures:1:net:rod pictures:2:ring:along pictures:3:tree:radius \
   pictures:4:falling:rod pictures:5:knot:along pictures:6:drape:rod side_by_side:0:side_by_side:rod \
-  lattice_sag:0:lattice:along lattice_dropped:0:dropped:along lattice_pressed:0:pressed:along net_wind:0:wind:along
+  lattice_sag:0:lattice:along lattice_dropped:0:dropped:along lattice_pressed:0:pressed:along net_wind:0:wind:along twisted:0:twisted:along pulled:0:pulled:along
 pictures: build
 	@$(call packages,pictures)
 	@mkdir -p results/figures; for job in $(picture_jobs); do [ -e results/$$job.h5 ] && resume=--resume || resume=; \

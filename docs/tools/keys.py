@@ -185,6 +185,8 @@ def page(text):
              section("`scene.tip_motion`", "All may be swept.", keys("scene.tip_motion")),
              section("`scene.wind`", "All may be swept.", keys("scene.wind")),
              section("`scene.contact`", "All may be swept; `{}` is contact with all defaults.", keys("scene.contact")),
+             *(section(f"`scene.{name}`", "A list; all may be swept.", keys(f"scene.{name}.item"))
+               for name in ("loads", "motions", "gravity_changes")),
              section("`scene.obstacles`", "A list of objects with one key each; all may be swept.", *obstacles),
              section("`time`", "All may be swept.", keys("time")),
              section("`solve`", "All may be swept.", keys("solve")),

@@ -140,8 +140,9 @@ bool evaluate_at_once(const std::vector<TaskRun>& runs, const StopRequested& sto
 
 bool steps_in_batches(const TaskSpec& spec) {
   const OpenRod* rod = open_rod(spec.scene);
-  return rod && spec.output.systems != StoredSystems::none && !rod->has_tip_load() && !rod->tip_motion && !rod->wind &&
-         !rod->contact && (rod->stretch == Stretch::inextensible || rod->stretch_compliance_per_j);
+  return rod && spec.output.systems != StoredSystems::none && !rod->has_tip_load() && !rod->tip_motion &&
+         rod->prescribed.is_nothing() && !rod->wind && !rod->contact &&
+         (rod->stretch == Stretch::inextensible || rod->stretch_compliance_per_j);
 }
 
 BatchKey batch_key(const TaskSpec& spec) {

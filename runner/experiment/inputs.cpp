@@ -23,7 +23,7 @@ void open_input(const InputFile& file) {
     PluginInstance(plugin_source({file.path, ""}, PythonClass::guess), nullptr, 0);
   else if (ends_with(file.key_path, "python_preconditioner.file"))
     PluginInstance(plugin_source({file.path, ""}, PythonClass::preconditioner), nullptr, 0);
-  else if (!ends_with(file.key_path, "skeleton"))  // the plan reads skeletons
+  else if (!ends_with(file.key_path, "skeleton") && !ends_with(file.key_path, "curves"))  // the plan reads these
     DatasetReader reader(file.path);
 }
 

@@ -79,7 +79,7 @@ void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepRep
     residual = larger_or_nan(residual, newton_residual(rod, at, rod.constraint_dt));
     imbalance = larger_or_nan(imbalance, balance.residual);
     kinetic += kinetic_energy(rod);
-    potential += gravitational_energy(rod, scene.gravity_m_s2);
+    potential += gravitational_energy(rod, scene.gravity_at(scene.time_s));
     elastic += elastic_energy(rod, at);
     momentum += linear_momentum(rod);
     spin += angular_momentum(rod);

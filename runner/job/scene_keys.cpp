@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "runner/job/curve_file.hpp"
 #include "runner/job/job.hpp"
 #include "runner/job/scene_part_keys.hpp"
 #include "runner/job/skeleton_file.hpp"
@@ -21,6 +22,15 @@ static void read_value(const Place& at, std::shared_ptr<const std::vector<Skelet
     const SkeletonFile& read = shared_skeleton(file.path, file.hash);
     trees = {std::shared_ptr<void>(), &read.trees};  // kept by shared_skeleton()
   } catch (const SkeletonError& error) {
+    throw job_error(at.job().path, at.path(), error.what());
+  }
+}
+
+static void read_value(const Place& at, std::shared_ptr<const std::vector<Curve>>& curves) {
+  const InputFile& file = at.job().files.at(at.text());
+  try {
+    curves = {std::shared_ptr<void>(), &shared_curves(file.path, file.hash)};  // kept there
+  } catch (const CurveError& error) {
     throw job_error(at.job().path, at.path(), error.what());
   }
 }
@@ -180,6 +190,10 @@ void add_rods(Table& table) {
   table.optional(object_key("wind", "motion of the air around the rods; segments have quadratic drag").or_word("none"),
                  wind_keys(), &Rods::wind);
   table.optional(obstacles_key(), &Rods::obstacles);
+  table.optional(loads_key(), [](Rods& rods) -> std::vector<PrescribedLoad>& { return rods.prescribed.loads; });
+  table.optional(motions_key(), [](Rods& rods) -> std::vector<PrescribedMotion>& { return rods.prescribed.motions; });
+  table.optional(gravity_changes_key(),
+                 [](Rods& rods) -> std::vector<GravityChange>& { return rods.prescribed.gravity; });
 }
 
 void add_trees(Table& table) {
@@ -217,6 +231,37 @@ void add_trees(Table& table) {
   table.optional(length_key("skeleton_unit_m", "length unit of the skeleton file"), &SkeletonTree::unit_m);
   table.optional(choice_key("skeleton_up", "axis of the skeleton file that points up"),
                  Words<Up>{{"y", Up::y}, {"z", Up::z}}, &SkeletonTree::up);
+}
+
+void add_curves(Table& table) {
+  const auto how = [](auto CurveCut::*member) {
+    return [member](Curves & curves) -> auto& { return curves.how.*member; };
+  };
+  table.required(file_key("curves", "file of lines through points: .csv, .txt, .json or .obj (docs/jobs.md)"),
+                 &Curves::curves);
+  table.optional(length_key("curves_unit_m", "length unit of the curves' file"), &Curves::unit_m);
+  table.optional(choice_key("interpolation", "between the points of a curve: straight lines, or a smooth spline"),
+                 Words<Interpolation>{{"linear", Interpolation::linear}, {"spline", Interpolation::spline}},
+                 how(&CurveCut::interpolation));
+  table.optional(number_key("segment_m", "greatest length of a segment of a curve; 0: a segment from point to point")
+                     .in("m")
+                     .from(0, 1e6),
+                 how(&CurveCut::segment_m));
+  table.optional(
+      number_key("join_m", "curves are joined at points that are not farther apart; 0: a millionth of their extent")
+          .in("m")
+          .from(0, 1e6),
+      how(&CurveCut::join_m));
+  table.optional(choice_key("held_ends", "what is clamped: nothing, or the ends at which curves are not joined"),
+                 Words<HeldPoints>{{"none", HeldPoints::none}, {"all", HeldPoints::ends}}, how(&CurveCut::held));
+  table.optional(list_key("held_at_m", "points of curves that are clamped, in addition",
+                          vector_key("point", "a point of a curve").in("m").from(-1e6, 1e6))
+                     .in("m"),
+                 how(&CurveCut::held_at_m));
+  table.optional(
+      choice_key("curve_rest_shape", "rest shape of curves: as drawn, or straight where two edges meet"),
+      Words<Curves::RestShape>{{"drawn", Curves::RestShape::drawn}, {"straight", Curves::RestShape::straight}},
+      &Curves::rest_shape);
 }
 
 void add_touching(Table& table) {
@@ -262,6 +307,7 @@ const KeyTable<SceneSpec>& scene_keys() {
     add_shapes(keys);
     add_rods(keys);
     add_trees(keys);
+    add_curves(keys);
     add_touching(keys);
     return keys;
   }();
@@ -328,9 +374,9 @@ std::vector<std::string> unbalanced_loads(const Json& values, const std::filesys
   if (values["time"]["balance"] != false || (method.is_string() && method != "cg" && method != "direct")) return {};
   std::vector<std::string> warnings;
   visit_scenes(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
-    if (scene["type"] == Lattice::name) return;  // its loads are at the centres of segments
-    for (const char* load : {"tip_force_n", "tip_torque_nm"}) {
-      bool is_loaded = false;
+    for (const char* load : {"tip_force_n", "tip_torque_nm", "loads"}) {
+      if (scene["type"] == Lattice::name && load == std::string("tip_force_n")) continue;  // at centres of segments
+      bool is_loaded = std::string(load) == "loads" && !scene["loads"].empty();
       visit_numbers(scene.value(load, Json()), "",
                     [&](double number, const std::string&) { is_loaded |= number != 0; });
       if (is_loaded)

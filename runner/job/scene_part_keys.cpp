@@ -66,6 +66,70 @@ Obstacle obstacle(const Place& at) {
   return found;
 }
 
+/// The keys of `schedule`. `help`: what is multiplied.
+template <class Owner>
+void add_schedule(KeyTable<Owner>& table, const char* what) {
+  table.optional(list_key("times_s", "times, increasing, at which factors are given; none: constant",
+                          number_key("time", "time").in("s").from(-1e9, 1e9))
+                     .in("s"),
+                 [](Owner& of) -> std::vector<double>& { return of.schedule.times_s; });
+  table.optional(list_key("factors", what, number_key("factor", "factor").from(-1e9, 1e9)),
+                 [](Owner& of) -> std::vector<double>& { return of.schedule.factors; });
+  table.optional(boolean_key("smooth", "between times: linear, or smooth with zero speed at each of them"),
+                 [](Owner& of) -> bool& { return of.schedule.smooth; });
+}
+
+const KeyTable<PrescribedLoad>& load_keys() {
+  static const auto keys = [] {
+    KeyTable<PrescribedLoad> table;
+    table.required(place("at_m", "point of a rod at the start"), &PrescribedLoad::at_m);
+    table.optional(vector_key("force_n", "force, fixed in the world").in("N").from(-1e12, 1e12),
+                   &PrescribedLoad::force_n);
+    table.optional(vector_key("torque_nm", "torque, fixed in the world").in("N m").from(-1e12, 1e12),
+                   &PrescribedLoad::torque_nm);
+    add_schedule(table, "factors of force and torque at these times, linear between them, constant before and after");
+    return table;
+  }();
+  return keys;
+}
+
+const KeyTable<PrescribedMotion>& motion_keys() {
+  static const auto keys = [] {
+    KeyTable<PrescribedMotion> table;
+    table.required(place("at_m", "point of a held segment at the start, about which it turns"),
+                   &PrescribedMotion::at_m);
+    table.optional(vector_key("displacement_m", "from its initial place").in("m").from(-1e6, 1e6),
+                   &PrescribedMotion::displacement_m);
+    table.optional(
+        vector_key("rotation_deg", "rotation vector, in the world: the axis times the angle").in("deg").from(-1e6, 1e6),
+        &PrescribedMotion::rotation_deg);
+    add_schedule(table, "factors of displacement and rotation at these times; the motion starts with 0");
+    return table;
+  }();
+  return keys;
+}
+
+const KeyTable<GravityChange>& gravity_keys() {
+  static const auto keys = [] {
+    KeyTable<GravityChange> table;
+    table.required(vector_key("by_m_s2", "is added to gravity_m_s2").in("m/s^2").from(-1e6, 1e6),
+                   &GravityChange::by_m_s2);
+    add_schedule(table, "factors of by_m_s2 at these times, linear between them, constant before and after");
+    return table;
+  }();
+  return keys;
+}
+
+template <class Item>
+void read_list(const KeyTable<Item>& keys, const Place& list, std::vector<Item>& items) {
+  items.clear();
+  const std::string& first = keys.keys().front().name;
+  while (list.item(items.size()).of(first).is_given()) {
+    const Place item = list.item(items.size());
+    keys.fill(items.emplace_back(), item);
+  }
+}
+
 }  // namespace
 
 KeyTable<SectionShape> section_keys() {
@@ -188,6 +252,36 @@ Key obstacles_key() {
       "obstacles", "solids that rods with \"contact\" touch, besides each other and the floor of the scene",
       variant_key("obstacle", "a solid at rest or with constant velocity", std::apply(keys, solid_kinds())));
 }
+
+Key loads_key() {
+  return list_key("loads", "forces and torques at points of rods",
+                  object_key("load", "a force and a torque at a point", load_keys().keys()));
+}
+
+Key motions_key() {
+  return list_key("motions", "motions of clamps",
+                  object_key("motion", "a motion of a held segment", motion_keys().keys()));
+}
+
+Key gravity_changes_key() {
+  return list_key("gravity_changes", "what is added to gravity over time",
+                  object_key("change", "a change of gravity", gravity_keys().keys()));
+}
+
+void read_value(const Place& list, std::vector<double>& numbers) {
+  numbers.clear();
+  while (list.item(numbers.size()).is_given()) numbers.push_back(list.item(numbers.size()).number());
+}
+
+void read_value(const Place& list, std::vector<Vector3>& points) {
+  points.clear();
+  while (list.item(points.size()).is_given())
+    points.emplace_back(Vector3::Map(list.item(points.size()).value().number));
+}
+
+void read_value(const Place& list, std::vector<PrescribedLoad>& loads) { read_list(load_keys(), list, loads); }
+void read_value(const Place& list, std::vector<PrescribedMotion>& motions) { read_list(motion_keys(), list, motions); }
+void read_value(const Place& list, std::vector<GravityChange>& changes) { read_list(gravity_keys(), list, changes); }
 
 void read_value(const Place& list, std::vector<Obstacle>& obstacles) {
   obstacles.clear();

@@ -1,4 +1,5 @@
-// The keys of the parts of a scene in a job: `section`, `tip_motion`, `wind`, `contact`, `obstacles`.
+// The keys of the parts of a scene in a job: `section`, `tip_motion`, `wind`, `contact`, `obstacles`, `loads`,
+// `motions`, `gravity_changes`.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -21,7 +22,17 @@ Key obstacles_key();
 /// Throws JobError if a half-space has no direction.
 void read_value(const Place& list, std::vector<Obstacle>& obstacles);
 
-inline nlohmann::ordered_json written(const Key&, const std::vector<Obstacle>&) {
+Key loads_key();
+Key motions_key();
+Key gravity_changes_key();
+void read_value(const Place& list, std::vector<double>& numbers);
+void read_value(const Place& list, std::vector<PrescribedLoad>& loads);
+void read_value(const Place& list, std::vector<PrescribedMotion>& motions);
+void read_value(const Place& list, std::vector<GravityChange>& changes);
+void read_value(const Place& list, std::vector<Vector3>& points);
+
+template <class Item>
+nlohmann::ordered_json written(const Key&, const std::vector<Item>&) {
   return nlohmann::ordered_json::array();  // default: none
 }
 

@@ -15,6 +15,8 @@ void check_alone(const Scene& scene, const std::string& name) {
     throw SceneError(name + " has " + std::to_string(scene.rods.size()) + " rods; must have one");
   if (!scene.clamps.empty())
     throw SceneError(name + " has a moving clamp; a batched step does not support moving clamps");
+  if (!scene.gravity_changes.empty())
+    throw SceneError(name + " has gravity that changes; a batched step does not support it");
   if (!scene.loads.empty()) throw SceneError(name + " has a point load; a batched step does not support point loads");
   if (scene.contact) throw SceneError(name + " has contact; a batched step does not support contact");
   if (scene.wind) throw SceneError(name + " has wind; a batched step does not support wind");

@@ -99,11 +99,11 @@ JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, 
   joint.b = b;
   joint.arm_a_m = Vector3(0, 0, length_a / 2);
   joint.arm_b_m = Vector3(0, 0, -length_b / 2);
-  joint.compliance_per_j =
-      p.stretch == Stretch::physical
-          ? physical_compliance(length, section)
-          : joint_compliance(length, section,
-                             p.stretch_compliance_per_j.value_or(inextensible_compliance(length, force_n)));
+  joint.compliance_per_j = p.stretch == Stretch::physical
+                               ? physical_compliance(length, section)
+                               : joint_compliance(length, section,
+                                                  p.stretch_compliance_per_j.value_or(inextensible_compliance(
+                                                      length, force_n + p.prescribed.largest_force_n())));
   return joint;
 }
 
@@ -119,7 +119,7 @@ JointSpec crossing_between(int a, int b, double stiffness_nm, double stretch_per
 double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p) {
   double mass = 0;
   for (const SegmentSpec& s : segments) mass += s.mass();
-  return mass * std::max(p.gravity_m_s2.norm(), standard_gravity);
+  return mass * std::max(p.prescribed.largest_gravity_m_s2(p.gravity_m_s2), standard_gravity);
 }
 
 void move_clamp(Scene& scene, int segment, const Vector3& velocity_m_s) {

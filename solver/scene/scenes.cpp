@@ -26,6 +26,7 @@ void validate(const SceneSpec& spec) {
   if (p.stretch == Stretch::physical && p.stretch_compliance_per_j)
     throw SceneError("stretch is physical, but stretch_compliance_per_j is given too; must be one of them");
   if (p.section) check_section(p);
+  p.prescribed.check();
   const SceneSize size = size_of(spec);
   if (size.rods > most_rods)
     throw SceneError(std::string(size.rods_key) + " is " + std::to_string(size.rods) + "; must be at most " +
@@ -42,6 +43,7 @@ Scene build_scene(const SceneSpec& spec) {
   scene.contact = p.contact;
   scene.obstacles = p.obstacles;
   std::visit([&scene](const auto& rods) { rods.build(scene); }, spec);
+  add_prescribed(p.prescribed, scene);
   return scene;
 }
 

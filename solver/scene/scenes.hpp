@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "solver/numbers/types.hpp"
+#include "solver/scene/curve_graph.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/scene/tree_skeleton.hpp"
 
@@ -74,6 +75,7 @@ struct RodParameters {
   std::optional<WindParameters> wind;
   std::optional<ContactSettings> contact;
   std::vector<Obstacle> obstacles;  ///< in addition to a scene's own floor
+  Prescribed prescribed;
 };
 
 /// The end of a rod moves by a displacement, and by a rotation about an axis in the world, in a time; then it rests.
@@ -225,6 +227,22 @@ struct SkeletonTree : RodParameters {
   void build(Scene& scene) const;
 };
 
+/// Curves as drawn (curve_graph.hpp): an edge is a cone between the radii of its nodes, a segment the cylinder of its
+/// volume. What is connected is one rod. Joints have the halves of the two edges that meet (softness.hpp). Where three and
+/// more edges meet, all are joined to the widest: each with its half, and the widest one's half belongs to the joint at its
+/// other end, a shift of compliance of second order in edge lengths. A held node is an exact clamp of all its edges.
+struct Curves : RodParameters {  ///< radius, moduli and density: of curves without their own
+  static constexpr const char* name = "curves";
+  enum class RestShape { drawn, straight };  ///< straight: without bends between the two edges of a node
+  std::shared_ptr<const std::vector<Curve>> curves;
+  double unit_m = 1;  ///< unit of their points and radii
+  CurveCut how;
+  RestShape rest_shape = RestShape::drawn;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
+};
+
 /// Scenes whose rods touch have contact, unless it is switched off.
 struct TouchingRods : RodParameters {
   TouchingRods() { contact = ContactSettings{}; }
@@ -293,7 +311,7 @@ struct Bundle : TouchingRods {
   void build(Scene& scene) const;
 };
 
-using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Lattice, Tree, Forest, SkeletonTree, FallingRods,
+using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Lattice, Tree, Forest, SkeletonTree, Curves, FallingRods,
                                CoilingRod, Knot, RingChain, Bundle>;
 
 /// The scene's rod if it is a single rod with two ends, else null.

@@ -1,17 +1,13 @@
 // Joints of a tree: where the stiffness of its edges is.
 //
-// An edge is a cone of two halves, from its lower node to its middle and on to its upper node. The compliance of one is
-//   integral of (t t^T / GJ + (I - t t^T) / EI) ds,   t the edge's axis,
-// and likewise against stretch and shear. Each joint has the halves that meet at it, in series:
+// An edge is a cone of two halves, from its lower node to its middle and on to its upper node (softness.hpp). Each joint has
+// the halves that meet at it, in series:
 //   a node with one edge above   the upper half of the edge below, the lower half of the edge above
 //   a fork                       the lower half of its branch. The moments of all branches bend the upper half of the
 //                                edge below, so that half belongs to the joint at that edge's lower end: a shift of
 //                                compliance by less than an edge, an error of second order in edge lengths
 //   the ground                   the lower half of its edge
 // So a joint's stiffness does not depend on the other branches of its node, nor on the order of nodes.
-//
-// The joint's frame has the principal axes of the sum: x is the axis n of the kink (n = t_a x t_b), y and z are in its
-// plane, z along the rod (half-way between t_a and t_b if both halves are alike).
 #pragma once
 
 #include "solver/scene/scene_parts.hpp"

@@ -162,8 +162,10 @@ void TimeStepper::find_loads() {
   for (std::size_t i = 0; i < scene_.loads.size(); ++i) {
     const PointLoad& load = scene_.loads[i];
     const auto r = static_cast<std::size_t>(load.rod), s = static_cast<std::size_t>(load.segment);
-    loads_[r].force_n[s] += load.force_n;
-    torques_nm_[i] = load.torque_nm + (scene_.rods[r].orientation[s] * load.arm_m).cross(load.force_n);
+    const double factor = load.schedule.at(end_of_step());
+    const Vector3 force_n = factor * load.force_n;
+    loads_[r].force_n[s] += force_n;
+    torques_nm_[i] = factor * load.torque_nm + (scene_.rods[r].orientation[s] * load.arm_m).cross(force_n);
   }
 }
 
@@ -180,8 +182,9 @@ void TimeStepper::predict(bool balanced) {
     torque(load, balanced && !scene_.rods[static_cast<std::size_t>(load.rod)].joints.empty()) += torques_nm_[i];
   }
   const bool loaded = scene_.wind || !scene_.loads.empty();
+  const Vector3 gravity = scene_.gravity_at(end_of_step());
   for (std::size_t r = 0; r < scene_.rods.size(); ++r)
-    flights_[r].predict(scene_.rods[r], scene_.damping_per_s, scene_.gravity_m_s2, loaded ? &loads_[r] : nullptr);
+    flights_[r].predict(scene_.rods[r], scene_.damping_per_s, gravity, loaded ? &loads_[r] : nullptr);
   const double end = end_of_step();
   for (const MovingClamp& clamp : scene_.clamps) {
     Rod& rod = scene_.rods[static_cast<std::size_t>(clamp.rod)];

@@ -10,8 +10,8 @@
 // from x + h (2 v - v_before) and q likewise. It ends when momentum is in balance as well. If two thirds of the
 // iterations do not come near that (a slender rod that hits the floor end-on can fold in many ways), the step is undone
 // and repeated as above.
-// Loads: gravity, point loads, and the wind's drag (wind.hpp), at the start of a step of Euler, at the expected end of
-// one of BDF2; in balance, torques of point loads act in g. A rod that hits something takes that step and the next two as
+// Loads: gravity and point loads as of the end of the step, and the wind's drag (wind.hpp), at the start of a step of
+// Euler, at the expected end of one of BDF2; in balance, torques of point loads act in g. A rod that hits something takes that step and the next two as
 // Euler's: with the velocity before an impact, BDF2 would rebound. Nothing allocates after construction, except for
 // contacts (contact_projection.hpp).
 #pragma once

@@ -22,7 +22,8 @@ LIBRARIES = [("MPI", "mpi", "openmpi", "libopenmpi-dev"), ("HDF5", "hdf5", "hdf5
              ("Eigen3", "eigen", "eigen", "libeigen3-dev"), ("nanoflann", "nanoflann", "nanoflann", "libnanoflann-dev"),
              ("nlohmann_json", "nlohmann-json", "nlohmann_json", "nlohmann-json3-dev"),
              ("CLI11", "cli11", "cli11", "libcli11-dev"), ("fmt", "fmt", "fmt", "libfmt-dev"),
-             ("Catch2", "catch2", "catch2", "catch2"), ("PkgConfig", "pkgconfig", "pkg-config", "pkg-config")]
+             ("Catch2", "catch2", "catch2", "catch2"), ("PkgConfig", "pkgconfig", "pkg-config", "pkg-config"),
+             ("pybind11", "py-pybind11", "pybind11", "pybind11-dev")]
 TOOLCHAIN = {"OpenMP", "benchmark"}  # of the compiler; a variant in Spack only
 
 

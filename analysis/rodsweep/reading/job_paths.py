@@ -1,6 +1,6 @@
 """Paths of input files in a parsed job, or in a part of it."""
 
-PATHS = ("data", "file", "library", "model", "skeleton")    # their keys (tested)
+PATHS = ("curves", "data", "file", "library", "model", "skeleton")    # their keys (tested)
 SWEEPS = ("grid", "zip")                            # a path may stand in a list of these
 
 

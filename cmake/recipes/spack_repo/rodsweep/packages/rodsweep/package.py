@@ -37,7 +37,8 @@ class Rodsweep(CMakePackage):
     depends_on("benchmark@1.7:", when="+bench")
 
     with when("+analysis"):
-        depends_on("python@3.11:", type="run")
+        depends_on("python@3.11:", type=("build", "link", "run"))
+        depends_on("py-pybind11", type="build")  # guesses in Python
         depends_on("py-numpy", type="run")
         depends_on("py-scipy", type="run")
         depends_on("py-h5py", type="run")

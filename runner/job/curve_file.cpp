@@ -1,0 +1,226 @@
+#include "runner/job/curve_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include "runner/job/strict_json.hpp"
+#include "runner/text/key_path.hpp"
+#include "runner/text/shortened.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The words of each line, without comments.
+class Lines {
+ public:
+  Lines(const std::string& text, const std::filesystem::path& file) : file_(file) {
+    constexpr const char* byte_order_mark = "\xEF\xBB\xBF";
+    in_.str(text.compare(0, 3, byte_order_mark) == 0 ? text.substr(3) : text);
+  }
+
+  bool next() {
+    std::string line;
+    if (!std::getline(in_, line)) return false;
+    ++number_;
+    is_comment_ = line.find('#') != std::string::npos;
+    line.erase(std::min(line.find('#'), line.size()));
+    for (char& c : line)
+      if (c == ',' || c == ';' || c == '\r') c = ' ';
+    std::istringstream parts(line);
+    words.clear();
+    for (std::string word; parts >> word;) words.push_back(word);
+    return true;
+  }
+
+  std::vector<std::string> words;
+  bool is_blank() const { return words.empty() && !is_comment_; }
+
+  template <class Number>
+  Number number(std::size_t word, const char* name, const char* bound) const {
+    Number value{};
+    const std::string& text = words[word];
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(static_cast<double>(value)))
+      refuse(fmt::format("{} is \"{}\"; must be {}", name, shortened(text), bound));
+    return value;
+  }
+  Vector3 point(std::size_t first) const {
+    Vector3 at;
+    for (std::size_t i = 0; i < 3; ++i)
+      at[static_cast<int>(i)] = number<double>(first + i, std::array{"x", "y", "z"}[i], "a finite number");
+    return at;
+  }
+  [[noreturn]] void refuse(const std::string& text) const {
+    throw CurveError(fmt::format("{}:{}: {}", file_.native(), number_, text));
+  }
+
+ private:
+  const std::filesystem::path& file_;
+  std::istringstream in_;
+  int number_ = 0;
+  bool is_comment_ = false;
+};
+
+std::vector<Curve> from_table(Lines lines) {
+  std::vector<Curve> curves;
+  bool begins = true, first = true;
+  std::size_t columns = 0;
+  while (lines.next()) {
+    if (lines.is_blank()) begins = true;
+    if (lines.words.empty()) continue;
+    using Words = std::vector<std::string>;
+    if (std::exchange(first, false) &&
+        (lines.words == Words{"x", "y", "z"} || lines.words == Words{"x", "y", "z", "radius"}))
+      continue;
+    if (lines.words.size() != 3 && lines.words.size() != 4)
+      lines.refuse(fmt::format("{} values; must be x y z, or x y z radius", lines.words.size()));
+    if (std::exchange(begins, false)) {
+      curves.emplace_back();
+      columns = lines.words.size();
+    }
+    if (lines.words.size() != columns)
+      lines.refuse(fmt::format("{} values; must be {}, as in the curve's first line", lines.words.size(), columns));
+    curves.back().points.push_back(lines.point(0));
+    if (columns == 4) curves.back().radii.push_back(lines.number<double>(3, "radius", "a finite number"));
+  }
+  return curves;
+}
+
+std::vector<Curve> from_obj(Lines lines) {
+  std::vector<Vector3> points;
+  std::vector<Curve> curves;
+  while (lines.next()) {
+    if (lines.words.empty()) continue;
+    if (lines.words[0] == "v") {
+      if (lines.words.size() < 4) lines.refuse("\"v\" needs x y z");
+      points.push_back(lines.point(1));
+    }
+    if (lines.words[0] != "l") continue;
+    Curve& curve = curves.emplace_back();
+    for (std::size_t i = 1; i < lines.words.size(); ++i) {
+      lines.words[i].erase(std::min(lines.words[i].find('/'), lines.words[i].size()));  // a texture's point
+      const int given = lines.number<int>(i, "a point of \"l\"", "the number of a \"v\" above");
+      const int index = given > 0 ? given - 1 : static_cast<int>(points.size()) + given;
+      if (given == 0 || index < 0 || index >= static_cast<int>(points.size()))
+        lines.refuse(fmt::format("a point of \"l\" is {}; must be the number of one of the {} \"v\" above", given,
+                                 points.size()));
+      curve.points.push_back(points[static_cast<std::size_t>(index)]);
+    }
+  }
+  return curves;
+}
+
+class JsonCurves {
+ public:
+  JsonCurves(const std::string& text, const std::filesystem::path& file)
+      : file_(file), json_(parse_strict_json(text, file)) {}
+
+  std::vector<Curve> read() const {
+    if (!json_.is_object() || !json_.contains("curves") || !json_["curves"].is_array())
+      refuse("curves", "missing; must be a list of curves");
+    std::vector<Curve> curves;
+    for (std::size_t i = 0; i < json_["curves"].size(); ++i)
+      curves.push_back(curve(json_["curves"][i], element("curves", i)));
+    return curves;
+  }
+
+ private:
+  Curve curve(const Json& json, const std::string& path) const {
+    if (!json.is_object() || !json.contains("points") || !json["points"].is_array())
+      refuse(member(path, "points"), "missing; must be a list of [x, y, z]");
+    Curve out;
+    for (const auto& [key, value] : json.items()) {
+      const std::string at = member(path, key);
+      if (key == "points") {
+        for (std::size_t i = 0; i < value.size(); ++i) out.points.push_back(point(value[i], element(at, i)));
+      } else if (key == "radius") {
+        out.radii = radii(value, json["points"].size(), at);
+      } else if (key == "name" && value.is_string()) {
+        out.name = "curve \"" + value.get<std::string>() + '"';
+      } else if (key == "youngs_modulus_pa") {
+        out.youngs_modulus_pa = positive(value, at);
+      } else if (key == "torsion_modulus_pa") {
+        out.torsion_modulus_pa = positive(value, at);
+      } else if (key == "density_kg_m3") {
+        out.density_kg_m3 = positive(value, at);
+      } else {
+        refuse(at,
+               "not allowed; a curve has points, radius, name, youngs_modulus_pa, torsion_modulus_pa, density_kg_m3");
+      }
+    }
+    return out;
+  }
+
+  std::vector<double> radii(const Json& value, std::size_t points, const std::string& path) const {
+    if (!value.is_array()) return std::vector<double>(points, positive(value, path));
+    if (value.size() != points)
+      refuse(path, fmt::format("{} values; must be one, or {} as points", value.size(), points));
+    std::vector<double> out;
+    for (std::size_t i = 0; i < points; ++i) out.push_back(positive(value[i], element(path, i)));
+    return out;
+  }
+  Vector3 point(const Json& value, const std::string& path) const {
+    if (!value.is_array() || value.size() != 3)
+      refuse(path, shortened(value.dump()) + " is not allowed; must be [x, y, z]");
+    Vector3 out;
+    for (std::size_t i = 0; i < 3; ++i) out[static_cast<int>(i)] = number(value[i], element(path, i));
+    return out;
+  }
+  double number(const Json& value, const std::string& path) const {
+    if (!value.is_number()) refuse(path, shortened(value.dump()) + " is not allowed; must be a number");
+    return value;
+  }
+  double positive(const Json& value, const std::string& path) const {
+    const double found = number(value, path);
+    if (!(found > 0)) refuse(path, fmt::format("{} is not allowed; must be positive", found));
+    return found;
+  }
+  [[noreturn]] void refuse(const std::string& path, const std::string& text) const {
+    throw CurveError(fmt::format("{}: {}: {}", file_.native(), path, text));
+  }
+
+  const std::filesystem::path& file_;
+  Json json_;
+};
+
+}  // namespace
+
+std::vector<Curve> parse_curves(const std::string& text, const std::filesystem::path& file) {
+  const std::string ending = file.extension().native();
+  std::vector<Curve> curves;
+  if (ending == ".json")
+    curves = JsonCurves(text, file).read();
+  else if (ending == ".obj")
+    curves = from_obj({text, file});
+  else if (ending == ".csv" || ending == ".txt")
+    curves = from_table({text, file});
+  else
+    throw CurveError(file.native() + ": the name ends in \"" + ending + "\"; must be .csv, .txt, .json or .obj" +
+                     (ending == ".swc" ? "; the scene \"skeleton\" reads .swc" : ""));
+  if (curves.empty()) throw CurveError(file.native() + ": has no curve");
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    if (curves[i].name.empty()) curves[i].name = fmt::format("curve {}", i + 1);
+  return curves;
+}
+
+const std::vector<Curve>& shared_curves(const std::filesystem::path& file, const std::string& hash) {
+  static std::map<std::pair<std::filesystem::path, std::string>, std::vector<Curve>> files;
+  if (const auto known = files.find({file, hash}); known != files.end()) return known->second;
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (in) text << in.rdbuf();
+  if (!in) throw CurveError(file.native() + ": cannot be read");
+  return files.emplace(std::pair(file, hash), parse_curves(text.str(), file)).first->second;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,32 @@
+// Reads curves from files of lines through points. The ending of the name tells the format:
+//
+//   .csv, .txt   a point per line, "x y z" or "x y z radius", between spaces, tabs, commas or semicolons; a blank line
+//                begins the next curve; '#' begins a comment; a first line "x,y,z" or "x,y,z,radius" is a header
+//   .json        {"curves": [{"points": [[x, y, z], ...], "radius": 0.01, ...}]}; "radius" may be a list, one for each
+//                point; also "name", "youngs_modulus_pa", "torsion_modulus_pa", "density_kg_m3"
+//   .obj         "v x y z" and "l 1 2 3"; other elements are ignored
+//
+// Refused, with the line or the key: what is no finite number, a radius that is not positive, curves of one point.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "solver/scene/curve_graph.hpp"
+
+namespace rodsweep {
+
+/// "FILE:LINE: TEXT", in JSON "FILE: KEY: TEXT".
+class CurveError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+std::vector<Curve> parse_curves(const std::string& text, const std::filesystem::path& file);
+
+/// The curves of a file with this content hash; read once per process.
+const std::vector<Curve>& shared_curves(const std::filesystem::path& file, const std::string& hash);
+
+}  // namespace rodsweep

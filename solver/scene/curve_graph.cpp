@@ -1,0 +1,259 @@
+#include "solver/scene/curve_graph.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/interpolators/catmull_rom.hpp>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <sstream>
+
+#include "solver/rod/rod.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// A point of a curve, maybe between given ones.
+struct Sample {
+  Vector3 at;
+  double radius;
+  int given;  ///< index, -1 between them
+};
+
+std::string text(const Vector3& point) {
+  std::ostringstream out;
+  out << '[' << point.x() << ", " << point.y() << ", " << point.z() << ']';
+  return out.str();
+}
+
+/// Numbers points; those within a tolerance have one number.
+class Places {
+ public:
+  explicit Places(double tolerance) : tolerance_(tolerance) {}
+
+  int number_of(const Vector3& point) {
+    if (const int found = find(point); found >= 0) return found;
+    points_.push_back(point);
+    const int number = static_cast<int>(points_.size()) - 1;
+    cells_[cell(point)].push_back(number);
+    return number;
+  }
+  int find(const Vector3& point) const {
+    const Cell centre = cell(point);
+    Cell at{};
+    for (at[0] = centre[0] - 1; at[0] <= centre[0] + 1; ++at[0])
+      for (at[1] = centre[1] - 1; at[1] <= centre[1] + 1; ++at[1])
+        for (at[2] = centre[2] - 1; at[2] <= centre[2] + 1; ++at[2])
+          if (const auto found = cells_.find(at); found != cells_.end())
+            for (const int number : found->second)
+              if ((points_[static_cast<std::size_t>(number)] - point).norm() <= tolerance_) return number;
+    return -1;
+  }
+  const std::vector<Vector3>& points() const { return points_; }
+
+ private:
+  using Cell = std::array<double, 3>;  // of the tolerance's size; whole numbers
+  Cell cell(const Vector3& point) const {
+    return {std::floor(point.x() / tolerance_), std::floor(point.y() / tolerance_), std::floor(point.z() / tolerance_)};
+  }
+
+  double tolerance_;
+  std::vector<Vector3> points_;
+  std::map<Cell, std::vector<int>> cells_;
+};
+
+double extent(const std::vector<Curve>& curves) {
+  Eigen::AlignedBox3d box;
+  for (const Curve& curve : curves)
+    for (const Vector3& point : curve.points) box.extend(point);
+  return box.diagonal().norm();
+}
+
+/// The curve's points; on a spline also those between them.
+std::vector<Sample> samples(const Curve& curve, double radius, Interpolation interpolation) {
+  const auto radius_at = [&](std::size_t i) { return curve.radii.empty() ? radius : curve.radii[i]; };
+  std::vector<Sample> out;
+  if (interpolation == Interpolation::linear) {
+    for (std::size_t i = 0; i < curve.points.size(); ++i)
+      out.push_back({curve.points[i], radius_at(i), static_cast<int>(i)});
+    return out;
+  }
+  using Point = std::array<double, 3>;
+  const auto as_point = [](const Vector3& at) { return Point{at.x(), at.y(), at.z()}; };
+  const std::vector<Vector3>& given = curve.points;
+  const std::size_t last = given.size() - 1;
+  const bool closed = given.front() == given.back();
+  if (closed && last < 4)
+    throw SceneError(curve.name + " has " + std::to_string(last) + " points; a closed spline needs at least 4");
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < last; ++i) points.push_back(as_point(given[i]));
+  if (!closed) {  // Boost takes the last point as that before the first: reflections are in between
+    points.insert(points.begin(), as_point(2 * given[0] - given[1]));
+    points.push_back(as_point(given[last]));
+    points.push_back(as_point(2 * given[last] - given[last - 1]));
+  }
+  const std::size_t before = closed ? 0 : 1;
+  const boost::math::catmull_rom<Point> spline(std::move(points), closed);
+  constexpr int between = 16;
+  for (std::size_t i = 0; i < last; ++i) {
+    const double from = spline.parameter_at_point(before + i);
+    const double to = closed && i + 1 == last ? spline.max_parameter() : spline.parameter_at_point(before + i + 1);
+    for (int k = 0; k < between; ++k) {
+      const double part = static_cast<double>(k) / between;
+      const Point at = spline(from + part * (to - from));
+      out.push_back({k == 0 ? curve.points[i] : Vector3(at[0], at[1], at[2]),
+                     radius_at(i) + part * (radius_at(i + 1) - radius_at(i)), k == 0 ? static_cast<int>(i) : -1});
+    }
+  }
+  out.push_back({curve.points[last], radius_at(last), static_cast<int>(last)});
+  return out;
+}
+
+void check(const Curve& curve, double tolerance) {
+  if (curve.points.size() < 2)
+    throw SceneError(curve.name + " has " + std::to_string(curve.points.size()) + " points; must have at least 2");
+  for (std::size_t i = 1; i < curve.points.size(); ++i)
+    if ((curve.points[i] - curve.points[i - 1]).norm() <= 2 * tolerance)
+      throw SceneError("point " + std::to_string(i + 1) + " of " + curve.name + " is at " + text(curve.points[i]) +
+                       ", as the one before; must be farther away than twice join_m, " + std::to_string(2 * tolerance) +
+                       " m");
+  for (std::size_t i = 0; i < curve.radii.size(); ++i)
+    if (!(curve.radii[i] > 0))
+      throw SceneError("the radius of point " + std::to_string(i + 1) + " of " + curve.name + " is " +
+                       std::to_string(curve.radii[i]) + "; must be positive");
+}
+
+/// Cuts samples [first, last] of a curve into equal pieces.
+class Cutter {
+ public:
+  Cutter(CurveGraph& graph, const std::vector<Sample>& samples, int curve)
+      : graph_(graph), samples_(samples), curve_(curve) {
+    arc_.push_back(0);
+    for (std::size_t i = 1; i < samples.size(); ++i)
+      arc_.push_back(arc_.back() + (samples[i].at - samples[i - 1].at).norm());
+  }
+
+  double length(std::size_t first, std::size_t last) const { return arc_[last] - arc_[first]; }
+
+  void cut(std::size_t first, std::size_t last, int from, int to, int pieces) {
+    int node = from;
+    Sample here = samples_[first];
+    for (int piece = 1; piece <= pieces; ++piece) {
+      const Sample there =
+          piece == pieces ? samples_[last] : at(arc_[first] + length(first, last) * piece / pieces, first, last);
+      const int next = piece == pieces ? to : new_node(there.at);
+      const int edge = static_cast<int>(graph_.edges.size());
+      graph_.edges.push_back({curve_, node, next, here.at, there.at, here.radius, there.radius});
+      for (const int end : {node, next}) graph_.nodes[static_cast<std::size_t>(end)].edges.push_back(edge);
+      node = next;
+      here = there;
+    }
+  }
+
+ private:
+  Sample at(double arc, std::size_t first, std::size_t last) const {
+    const auto next = std::upper_bound(arc_.begin() + static_cast<std::ptrdiff_t>(first) + 1,
+                                       arc_.begin() + static_cast<std::ptrdiff_t>(last), arc);
+    const auto i = static_cast<std::size_t>(next - arc_.begin());
+    const double part = (arc - arc_[i - 1]) / (arc_[i] - arc_[i - 1]);
+    const Sample &a = samples_[i - 1], &b = samples_[i];
+    return {a.at + part * (b.at - a.at), a.radius + part * (b.radius - a.radius), -1};
+  }
+  int new_node(const Vector3& at) {
+    graph_.nodes.push_back({at, false, {}});
+    return static_cast<int>(graph_.nodes.size()) - 1;
+  }
+
+  CurveGraph& graph_;
+  const std::vector<Sample>& samples_;
+  int curve_;
+  std::vector<double> arc_;
+};
+
+void number_components(CurveGraph& graph) {
+  graph.component.assign(graph.nodes.size(), -1);
+  for (std::size_t start = 0; start < graph.nodes.size(); ++start) {
+    if (graph.component[start] >= 0) continue;
+    std::vector<int> next{static_cast<int>(start)};
+    graph.component[start] = graph.components;
+    while (!next.empty()) {
+      const auto node = static_cast<std::size_t>(next.back());
+      next.pop_back();
+      for (const int e : graph.nodes[node].edges)
+        for (const int end :
+             {graph.edges[static_cast<std::size_t>(e)].from, graph.edges[static_cast<std::size_t>(e)].to})
+          if (graph.component[static_cast<std::size_t>(end)] < 0) {
+            graph.component[static_cast<std::size_t>(end)] = graph.components;
+            next.push_back(end);
+          }
+    }
+    ++graph.components;
+  }
+}
+
+}  // namespace
+
+CurveGraph cut(const std::vector<Curve>& curves, double radius, const CurveCut& how) {
+  const double tolerance = how.join_m > 0 ? how.join_m : 1e-6 * extent(curves);
+  if (curves.empty() || !(tolerance > 0)) throw SceneError("curves need a curve of two points");
+  for (const Curve& curve : curves) check(curve, tolerance);
+
+  Places places(tolerance);
+  std::vector<std::vector<int>> numbers;  // of the places of each curve's points
+  for (const Curve& curve : curves) {
+    std::vector<int>& own = numbers.emplace_back();
+    for (const Vector3& point : curve.points) own.push_back(places.number_of(point));
+  }
+  std::vector<int> branches(places.points().size(), 0);  // lines that leave a place
+  std::vector<char> is_node(places.points().size(), 0), held(places.points().size(), 0);
+  for (const std::vector<int>& own : numbers)
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const bool end = i == 0 || i + 1 == own.size();
+      const auto place = static_cast<std::size_t>(own[i]);
+      if (end || branches[place] > 0) is_node[place] = 1;
+      branches[place] += end ? 1 : 2;
+    }
+  for (const Vector3& point : how.held_at_m) {
+    const int place = places.find(point);
+    if (place < 0) throw SceneError("held_at_m has " + text(point) + ", which is no point of a curve (within join_m)");
+    is_node[static_cast<std::size_t>(place)] = held[static_cast<std::size_t>(place)] = 1;
+  }
+
+  CurveGraph graph;
+  std::vector<int> node_of(places.points().size(), -1);
+  for (std::size_t place = 0; place < places.points().size(); ++place) {
+    if (!is_node[place]) continue;
+    const bool end = how.held == HeldPoints::ends && branches[place] == 1;
+    node_of[place] = static_cast<int>(graph.nodes.size());
+    graph.nodes.push_back({places.points()[place], held[place] != 0 || end, {}});
+  }
+  const auto meets = [&](int place) { return branches[static_cast<std::size_t>(place)] > 2; };
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const std::vector<Sample> line = samples(curves[c], radius, how.interpolation);
+    Cutter cutter(graph, line, static_cast<int>(c));
+    std::size_t first = 0;
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      if (line[i].given < 0) continue;
+      const int from = numbers[c][static_cast<std::size_t>(line[first].given)];
+      const int to = numbers[c][static_cast<std::size_t>(line[i].given)];
+      const bool drawn = how.segment_m <= 0;  // every given point ends an edge
+      if (!drawn && !is_node[static_cast<std::size_t>(to)]) continue;
+      for (const int place : {from, to})
+        if (int& node = node_of[static_cast<std::size_t>(place)]; node < 0) {
+          node = static_cast<int>(graph.nodes.size());
+          graph.nodes.push_back({places.points()[static_cast<std::size_t>(place)], false, {}});
+        }
+      const double pieces = drawn ? 1 : std::ceil(cutter.length(first, i) / how.segment_m - 1e-9);
+      constexpr double most = 1e7;
+      require(pieces <= most, "the number of segments of a curve", pieces, "at most 1e7; segment_m must be greater");
+      const int least = from == to ? 3 : meets(from) && meets(to) ? 2 : 1;
+      cutter.cut(first, i, node_of[static_cast<std::size_t>(from)], node_of[static_cast<std::size_t>(to)],
+                 std::max(least, static_cast<int>(pieces)));
+      first = i;
+    }
+  }
+  number_components(graph);
+  return graph;
+}
+
+}  // namespace rodsweep

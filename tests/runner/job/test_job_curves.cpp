@@ -1,0 +1,86 @@
+// Curves from files, and loads, motions and changes of gravity in jobs.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "runner/plan/scene_spec.hpp"
+#include "tests/runner/job_folder.hpp"
+#include "tests/runner/refused_jobs.hpp"
+
+namespace rodsweep {
+namespace test_job_curves {
+
+using Catch::Contains;
+
+Json curves_job(const std::string& more = "") {
+  return with("/scene", R"({"type": "curves", "curves": "bow.csv", "radius_m": 0.01, "density_kg_m3": 800,
+      "youngs_modulus_pa": 1e9, "torsion_modulus_pa": 1e8)" +
+                            more + "}");
+}
+
+std::string refusal_in(const JobFolder& folder, const Json& job) {
+  return message_of<JobError>([&] { check_scene(Plan(folder.job(job)).spec(0).scene, folder.job(job)); });
+}
+
+TEST_CASE("a file of curves beside the job becomes rods; its content is part of the tasks") {
+  const JobFolder folder;
+  folder.write("bow.csv", "0 0 0\n100 0 0\n\n100 0 0\n100 50 0\n");
+  const Json job = curves_job(R"(, "curves_unit_m": 0.01, "segment_m": 0.1, "held_at_m": [[0, 0, 0]])");
+  const Plan plan(folder.job(job));
+  CHECK(plan.task(0).segments == 16);  // with the clamp
+  CHECK(plan.task(0).joints == 15);
+  const Scene scene = build_scene(plan.spec(0).scene);
+  CHECK(scene.rods.size() == 1);
+  CHECK((scene.rods[0].position.back() - Vector3(0, 0, 0)).norm() < 1e-15);
+  folder.write("bow.csv", "0 0 0\n100 0 0\n");
+  CHECK(Plan(folder.job(job)).identity(0).trajectory != plan.identity(0).trajectory);
+}
+
+TEST_CASE("mistakes in a file of curves, or in what is held, are told with file and line") {
+  const JobFolder folder;
+  folder.write("bow.csv", "0 0 0\n1 0\n");
+  CHECK_THAT(refusal_in(folder, curves_job()),
+             Contains("scene.curves: ") && Contains("bow.csv:2: 2 values; must be x y z"));
+  folder.write("bow.csv", "0 0 0\n1 0 0\n");
+  CHECK_THAT(refusal_in(folder, curves_job(R"(, "held_at_m": [[0, 1, 0]])")),
+             Contains("scene: held_at_m has [0, 1, 0], which is no point of a curve"));
+}
+
+TEST_CASE("loads, motions and changes of gravity are read, and their values may be sweeps") {
+  const Plan plan = plan_of(with("/scene/loads", R"([
+      {"at_m": [1, 0, 0], "force_n": [0, {"grid": [-1, -2]}, 0], "times_s": [0, 1], "factors": [0, 3], "smooth": true},
+      {"at_m": [0.5, 0, 0], "torque_nm": [1, 0, 0]}])"));
+  REQUIRE(plan.size() == 2);
+  const Prescribed read = rod_parameters(plan.spec(1).scene).prescribed;
+  REQUIRE(read.loads.size() == 2);
+  CHECK(read.loads[0].force_n == Vector3(0, -2, 0));
+  CHECK(read.loads[0].schedule.at(2) == 3);
+  CHECK(read.loads[0].schedule.smooth);
+  CHECK(read.loads[1].torque_nm == Vector3(1, 0, 0));
+  CHECK(read.loads[1].schedule.at(2) == 1);
+  CHECK(plan.identity(0).trajectory != plan.identity(1).trajectory);
+  const Plan moved =
+      plan_of(with("/scene/motions", R"([{"at_m": [0, 0, 0], "rotation_deg": [90, 0, 0], "times_s": [0, 1],
+      "factors": [0, 1]}])",
+                   with("/scene/gravity_changes", R"([{"by_m_s2": [0, 9.81, 0]}])")));
+  const Prescribed other = rod_parameters(moved.spec(0).scene).prescribed;
+  CHECK(other.motions.at(0).rotation_deg == Vector3(90, 0, 0));
+  CHECK(other.gravity.at(0).by_m_s2 == Vector3(0, 9.81, 0));
+  CHECK(rod_parameters(plan_of(small_job()).spec(0).scene).prescribed.is_nothing());
+}
+
+TEST_CASE("loads that a job cannot mean are refused with what is allowed") {
+  check_refused({
+      {with("/scene/loads", R"([{"force_n": [0, -1, 0]}])"),
+       "scene.loads[0].at_m: missing: point of a rod at the start [m]"},
+      {with("/scene/loads", R"([{"at_m": [0, 0, 0], "forces": 1}])"), "scene.loads[0].forces: unknown key",
+       "\"force_n\""},
+      {with("/scene/loads", R"([{"at_m": [1, 0, 0], "times_s": [0]}])"),
+       "scene: loads[0]: times_s has 1 values, factors 0"},
+      {with("/scene/motions", R"([{"at_m": [0, 0, 0], "displacement_m": [1, 0, 0]}])"),
+       "scene: motions[0]: begins with the factor 1"},
+      {with("/scene/loads", R"({"at_m": [0, 0, 0]})"), "scene.loads: ", "a list [...]"},
+  });
+}
+
+}  // namespace test_job_curves
+}  // namespace rodsweep

@@ -1,0 +1,191 @@
+// Curves: a straight one is a bending rod; what is drawn in another order, direction or in parts moves alike.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/solver/simulation.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep::test_curves {
+
+using Catch::Contains;
+
+Curve line(const std::vector<Vector3>& points) { return {"curve", points, {}, {}, {}, {}}; }
+
+Curves curves(const std::vector<Curve>& drawn, double segment_m = 0.1) {
+  Curves p;
+  static_cast<RodParameters&>(p) = test::bending_rod(10);
+  p.curves = std::make_shared<const std::vector<Curve>>(drawn);
+  p.how.segment_m = segment_m;
+  return p;
+}
+
+/// The positions of free segments in the order of their initial places.
+std::vector<Vector3> positions(const Scene& initial, const Scene& now) {
+  std::vector<std::pair<std::vector<double>, Vector3>> all;
+  for (std::size_t r = 0; r < now.rods.size(); ++r)
+    for (std::size_t s = 0; s < now.rods[r].segments.size(); ++s) {
+      if (now.rods[r].segments[s].is_static) continue;
+      const Vector3 at = initial.rods[r].position[s];
+      std::vector<double> key;
+      for (const double x : {at.x(), at.y(), at.z()}) key.push_back(std::round(1e6 * x));
+      all.emplace_back(key, now.rods[r].position[s]);
+    }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Vector3> out;
+  for (const auto& one : all) out.push_back(one.second);
+  return out;
+}
+
+std::vector<Vector3> after(const Curves& p, int steps = 20) {
+  const Scene initial = build_scene(p);
+  Simulation simulation(initial, 0.01);
+  simulation.run(steps);
+  return positions(initial, simulation.scene);
+}
+
+double distance(const std::vector<Vector3>& one, const std::vector<Vector3>& other) {
+  REQUIRE(one.size() == other.size());
+  double most = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) most = std::max(most, (one[i] - other[i]).norm());
+  return most;
+}
+
+TEST_CASE("a straight curve with a held end is the bending rod with a wall") {
+  BendingRod rod = test::bending_rod(10, Clamp::wall);
+  rod.length_m = 1;
+  rod.initial_angle_deg = 0;
+  const Scene expected = build_scene(rod);
+  Curves p = curves({line({{0, 0, 0}, {0.4, 0, 0}, {1, 0, 0}})});
+  static_cast<RodParameters&>(p) = rod;
+  p.how.held_at_m = {{0, 0, 0}};
+  const Scene found = build_scene(p);
+  REQUIRE(found.rods.size() == 1);
+  CHECK(size_of(p).segments == found.rods[0].segment_count());
+  CHECK(size_of(p).joints == found.rods[0].joint_count());
+  REQUIRE(found.rods[0].joint_count() == expected.rods[0].joint_count());
+  for (const Stretch stretch : {Stretch::inextensible, Stretch::physical}) {
+    rod.stretch = p.stretch = stretch;
+    Simulation own(build_scene(p), 0.01), other(build_scene(rod), 0.01);
+    const Scene initial = own.scene;
+    own.run(20);
+    other.run(20);
+    CHECK(distance(positions(initial, own.scene), positions(expected, other.scene)) < 1e-9);
+  }
+}
+
+TEST_CASE("a curve drawn backwards, in two parts or with more points moves alike") {
+  const Vector3 a(0, 0, 0), b(0.6, 0, 0), c(0.6, 0, 0.5);
+  const auto held = [&](const std::vector<Curve>& drawn) {
+    Curves p = curves(drawn);
+    p.how.held_at_m = {a};
+    return after(p);
+  };
+  const std::vector<Vector3> whole = held({line({a, b, c})});
+  CHECK(distance(whole, held({line({c, b, a})})) < 1e-9);
+  CHECK(distance(whole, held({line({a, b}), line({b, c})})) < 1e-9);
+  CHECK(distance(whole, held({line({c, b}), line({a, b})})) < 1e-9);
+  CHECK(distance(whole, held({line({b, c}), line({b, a})})) < 1e-9);
+  CHECK(distance(whole, held({line({a, 0.3 * b, b, c})})) < 1e-9);
+}
+
+TEST_CASE("where three curves meet, their order and directions do not matter") {
+  const Vector3 o(0, 0, 0), x(0.4, 0, 0), y(-0.2, 0, 0.3), z(-0.2, 0, -0.3);
+  const auto held = [&](std::vector<Curve> drawn, const std::vector<double>& radii) {
+    for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i].radii.assign(2, radii[i]);
+    Curves p = curves(drawn);
+    p.how.held_at_m = {x};
+    return after(p);
+  };
+  const std::vector<Vector3> first = held({line({x, o}), line({o, y}), line({o, z})}, {0.05, 0.03, 0.02});
+  CHECK(distance(first, held({line({z, o}), line({x, o}), line({y, o})}, {0.02, 0.05, 0.03})) < 1e-9);
+  CHECK(distance(first, held({line({y, o}), line({o, z}), line({o, x})}, {0.03, 0.02, 0.05})) < 1e-9);
+}
+
+TEST_CASE("a strut between two forks, a loop and curves apart have the segments and joints that they need") {
+  const Vector3 a(0, 0, 0), b(1, 0, 0);
+  Curves h = curves(
+      {line({a, b}), line({a, {0, 0, 1}}), line({a, {0, 0, -1}}), line({b, {1, 0, 1}}), line({b, {1, 0, -1}})}, 2);
+  CHECK(size_of(h).segments == 6);  // the strut is cut in two
+  CHECK(size_of(h).joints == 5);
+  CHECK(size_of(h).rods == 1);
+  Curves loop = curves({line({a, b, {1, 1, 0}, a})}, 100);
+  CHECK(size_of(loop).segments == 3);
+  CHECK(size_of(loop).joints == 3);
+  Curves apart = curves({line({a, b}), line({{0, 1, 0}, {1, 1, 0}})}, 0.5);
+  CHECK(size_of(apart).rods == 2);
+  CHECK(build_scene(apart).rods.size() == 2);
+  apart.how.held = HeldPoints::ends;
+  CHECK(size_of(apart).segments == 8);
+  CHECK(size_of(apart).joints == 6);
+}
+
+TEST_CASE("a square drawn as four lines vibrates as a closed ring of its corners does") {
+  const Vector3 a(0, 0, 0), b(1, 0, 0), c(1, 0, 1), d(0, 0, 1);
+  Curves whole = curves({line({a, b, c, d, a})}),
+         parts = curves({line({c, b}), line({a, d}), line({a, b}), line({d, c})});
+  for (Curves* p : {&whole, &parts}) p->how.held_at_m = {a};
+  CHECK(distance(after(whole), after(parts)) < 1e-9);
+}
+
+TEST_CASE("a straight rest shape straightens a bent curve, a drawn one keeps it") {
+  Curves p = curves({line({{0, 0, 0}, {0.5, 0, 0}, {0.9, 0.3, 0}})});
+  p.gravity_m_s2.setZero();
+  for (const bool straight : {false, true}) {
+    p.rest_shape = straight ? Curves::RestShape::straight : Curves::RestShape::drawn;
+    Simulation simulation(build_scene(p), 0.05);
+    simulation.relax(1e-7);
+    const Rod& rod = simulation.rod();
+    const double kink = director(rod.orientation.front()).cross(director(rod.orientation.back())).norm();
+    CHECK(kink == Approx(straight ? 0 : 0.6).margin(1e-4));
+  }
+}
+
+TEST_CASE("a spline through points of a circle is a circle, also through its ends") {
+  for (const bool closed : {false, true}) {
+    std::vector<Vector3> points;
+    for (int i = 0; i <= 12; ++i) {
+      const double angle = i * pi / (closed ? 6 : 12);
+      points.emplace_back(std::cos(angle), std::sin(angle), 0);
+    }
+    if (closed) points.back() = points.front();
+    Curves p = curves({line(points)}, 0.05);
+    p.how.interpolation = Interpolation::spline;
+    const Scene scene = build_scene(p);
+    CHECK(scene.rods[0].joint_count() == scene.rods[0].segment_count() - (closed ? 0 : 1));
+    for (const Vector3& at : scene.rods[0].position) CHECK(at.norm() == Approx(1).margin(closed ? 0.003 : 0.01));
+  }
+}
+
+TEST_CASE("radii and materials of curves are their own") {
+  Curve thick = line({{0, 0, 0}, {1, 0, 0}});
+  thick.radii = {0.02, 0.04};
+  thick.density_kg_m3 = 2000;
+  const Scene scene = build_scene(curves({thick, line({{0, 1, 0}, {1, 1, 0}})}, 0.001));
+  double mass = 0;
+  for (const Segment& segment : scene.rods[0].segments) mass += segment.mass;
+  CHECK(mass == Approx(2000 * pi / 3 * (0.02 * 0.02 + 0.02 * 0.04 + 0.04 * 0.04)));
+  CHECK(scene.rods[1].segments[0].radius_m == test::bending_rod(10).radius_m);
+}
+
+TEST_CASE("curves that cannot be rods are refused") {
+  const auto refused = [](Curves p) {
+    try {
+      build_scene(p);
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK_THAT(refused(curves({line({{0, 0, 0}})})), Contains("need a curve of two points"));
+  CHECK_THAT(refused(curves({line({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}})})),
+             Contains("point 3 of curve is at [1, 0, 0], as the one before"));
+  Curves away = curves({line({{0, 0, 0}, {1, 0, 0}})});
+  away.how.held_at_m = {{0, 1, 0}};
+  CHECK_THAT(refused(away), Contains("held_at_m has [0, 1, 0], which is no point of a curve"));
+  Curves closed = curves({line({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}})});
+  closed.how.interpolation = Interpolation::spline;
+  CHECK_THAT(refused(closed), Contains("a closed spline needs at least 4"));
+}
+
+}  // namespace rodsweep::test_curves

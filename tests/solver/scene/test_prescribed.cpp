@@ -1,0 +1,105 @@
+// Loads, motions of clamps and changes of gravity over time.
+#include <catch2/catch.hpp>
+
+#include "tests/solver/simulation.hpp"
+#include "tests/solver/stepping.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep::test_prescribed {
+
+using Catch::Contains;
+
+TEST_CASE("a schedule is linear or smooth between its times and constant outside") {
+  Schedule linear{{1, 2, 4}, {0, 3, 1}, false}, smooth = linear;
+  smooth.smooth = true;
+  for (const Schedule& of : {linear, smooth}) {
+    CHECK(of.at(0) == 0);
+    CHECK(of.at(1) == 0);
+    CHECK(of.at(2) == 3);
+    CHECK(of.at(9) == 1);
+    CHECK(of.at(1.5) == Approx(1.5));
+    CHECK(of.at(3) == Approx(2));
+    CHECK(of.largest() == 3);
+  }
+  CHECK(linear.at(1.1) == Approx(0.3));
+  CHECK(smooth.at(1 + 1e-4) < 1e-10);  // no speed
+  CHECK(Schedule().at(7) == 1);
+  CHECK_THROWS_WITH((Schedule{{0, 1}, {1}, false}.check()), Contains("times_s has 2 values, factors 1"));
+  CHECK_THROWS_WITH((Schedule{{0, 0}, {1, 1}, false}.check()), Contains("greater than the one before"));
+}
+
+TEST_CASE("a constant load at the tip is the tip's force and torque") {
+  BendingRod tip = test::bending_rod(12), point = tip;
+  tip.tip_force_n = {0.1, -0.2, 0.05};
+  tip.tip_torque_nm = {0.01, 0, 0.02};
+  const Vector3 end = tip.vertex_m(12);
+  point.prescribed.loads.push_back({end, tip.tip_force_n, tip.tip_torque_nm, {}});
+  for (const std::optional<double> balance : {std::optional<double>(), std::optional<double>(1e-8)}) {
+    Simulation one(build_scene(tip), 0.01, 12, balance), other(build_scene(point), 0.01, 12, balance);
+    for (PointLoad& load : other.scene.loads) load.arm_m = one.scene.loads.front().arm_m;  // not rounded
+    one.run(20);
+    other.run(20);
+    CHECK(test::distance(one.scene, other.scene, &Rod::position) < 1e-9);
+  }
+}
+
+TEST_CASE("forces and gravity over time move a free body as their integral does") {
+  Scene scene = test::free_body();
+  const double mass = scene.rods[0].segments[0].mass, dt = 0.01;
+  Prescribed all;
+  all.loads.push_back({scene.rods[0].position[0], {mass, 0, 0}, {0, 0, 0}, {{0, 1}, {0, 1}, false}});
+  all.gravity.push_back({{0, 3, 0}, {{0, 1}, {0, 1}, false}});
+  add_prescribed(all, scene);
+  Simulation simulation(scene, dt);
+  simulation.run(100);
+  const Vector3& v = simulation.rod().velocity[0];
+  CHECK(v.x() == Approx(0.5 * (1 + dt)));  // the sum of factors at the ends of steps
+  CHECK(v.y() == Approx(1.5 * (1 + dt)));
+  CHECK(v.z() == Approx(0).margin(1e-12));
+  CHECK(simulation.scene.gravity_at(0.5) == Vector3(0, 1.5, 0));
+}
+
+TEST_CASE("a smooth motion of a clamp is the motion of a tip") {
+  BendingRod tip = test::bending_rod(12, Clamp::wall);
+  tip.stretch = Stretch::physical;
+  tip.tip_motion = TipMotion{{-0.2, 0.1, 0}, {0, 0, 90}, 0.1};
+  const Scene expected = build_scene(tip);
+  Scene scene = expected;
+  scene.clamps.clear();
+  Prescribed moved;
+  const Vector3 end = tip.vertex_m(12);
+  // In two parts, which add up.
+  const Schedule schedule{{0, 0.1}, {0, 1}, true};
+  moved.motions.push_back({end, {-0.2, 0, 0}, {0, 0, 90}, schedule});
+  moved.motions.push_back({end, {0, 0.1, 0}, {0, 0, 0}, schedule});
+  add_prescribed(moved, scene);
+  Simulation one(expected, 0.01), other(scene, 0.01);
+  one.run(15);
+  other.run(15);
+  CHECK(test::distance(one.scene, other.scene, &Rod::position) < 1e-9);
+}
+
+TEST_CASE("points away from rods, loads on clamps and motions of free segments are refused") {
+  const auto refused = [](const Prescribed& prescribed) {
+    BendingRod rod = test::bending_rod(10);
+    rod.prescribed = prescribed;
+    try {
+      build_scene(rod);
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const Schedule schedule{{0, 1}, {0, 1}, false};
+  Prescribed away, held, free, jump, shape;
+  away.loads.push_back({{0, 5, 0}, {1, 0, 0}, {0, 0, 0}, {}});
+  held.loads.push_back({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {}});
+  free.motions.push_back({test::bending_rod(10).vertex_m(10), {1, 0, 0}, {0, 0, 0}, schedule});
+  jump.motions.push_back({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {}});
+  CHECK_THAT(refused(away), Contains("a load at [0, 5, 0] is") && Contains("m away from the nearest segment"));
+  CHECK_THAT(refused(held), Contains("a load at [0, 0, 0] is on a held segment"));
+  CHECK_THAT(refused(free), Contains("a motion of a clamp at") && Contains("m away from the nearest segment"));
+  CHECK_THAT(refused(jump), Contains("motions[0]: begins with the factor 1"));
+}
+
+}  // namespace rodsweep::test_prescribed
