@@ -18,6 +18,32 @@ ROD = {"type": "bending_rod", "segments": 9, "length_m": {"uniform": [1, 2]}, "r
        "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6}
 
 
+def cross(r):
+    return np.array([[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]])
+
+
+def matrix_by_hand(system, held):
+    """A of a chain whose rest shape is straight, by the formulas of docs/methods.md."""
+    rod, joints = system.of, len(system.b) // 6
+    jacobian = np.zeros((6 * joints, 6 * (joints + 1)))
+    for k, (a, b) in enumerate(rod.segments):
+        (wa, *va), (wb, *vb) = system.orientation[a], system.orientation[b]
+        w = wa * wb + np.dot(va, vb)
+        v = wa * np.array(vb) - wb * np.array(va) - np.cross(va, vb)
+        w, v = (w, v) if w >= 0 else (-w, -v)
+        length, half = (rod.length_m[a] + rod.length_m[b]) / 2, w * np.eye(3) + cross(v) + np.outer(v, v) / (1 + w)
+        for segment, h, arm, sign in ((a, half.T, rod.length_m[a] / 2, 1), (b, half, -rod.length_m[b] / 2, -1)):
+            rows = jacobian[6 * k:6 * k + 6, 6 * segment:6 * segment + 6]
+            rows[:3, :3] = sign * h / length
+            rows[:3, 3:] = -sign * h @ cross([0, 0, arm]) / length
+            rows[3:, 3:] = -sign * (w * np.eye(3) - sign * cross(v))
+    m, l, r = rod.mass_kg, rod.length_m, rod.radius_m
+    turning = 1 / (m * l ** 2 / 12 + m * r ** 2 / 4)
+    mobility = np.stack([1 / m, 1 / m, 1 / m, turning, turning, 2 / (m * r ** 2)], axis=1)
+    mobility[held] = 0
+    return jacobian * mobility.ravel() @ jacobian.T + np.diag(rod.compliance_per_j.ravel()) / system.dt_s ** 2
+
+
 class Exported(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -38,6 +64,13 @@ class Exported(unittest.TestCase):
             json.dump({key: value for key, value in job.items() if value is not None}, file)
         self.program("run", "s.json", "-o", "s.h5")
         return "s.h5"
+
+    def test_the_matrix_can_be_made_by_hand(self):
+        self.program("systems", self.swept(), "0", "--every", "2", "-o", "a.h5")
+        with rodsweep.systems("a.h5") as systems:
+            for system in systems:
+                error = matrix_by_hand(system, held=[0]) - system.A.toarray()
+                self.assertLess(abs(error).max(), 1e-12 * abs(system.A).max())
 
     def test_a_sweeps_systems_are_those_that_it_counted(self):
         file = self.swept()
