@@ -35,7 +35,7 @@ studies = bending_data helix_data spatial_bending spatial_helix temporal_bending
 score_scenes = bending_rod helix tree forest net lattice falling_rods knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo report score studies archive variants ablation pictures test test-long test-cluster test-arm bench sanitize fuzz schema pages docs format format-check tidy install uninstall clean
+.PHONY: help configure build demo report score studies archive benchmark-data variants ablation pictures test test-long test-cluster test-arm bench sanitize fuzz schema pages docs format format-check tidy install uninstall clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), write results/report.html'
@@ -43,6 +43,7 @@ help:
 	@echo 'make score         the cheapest way to an error of the motion, with and without guesses, by scene (an hour; likewise)'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (two hours; continued if it was stopped)'
 	@echo 'make archive       results of make score and make studies, models and tables, with checksums: results/archive.tar'
+	@echo 'make benchmark-data   linear systems for those who try guesses elsewhere, results/benchmark (a minute)'
 	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
 	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (an hour and a half; likewise)'
 	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind, curves), draw their films (installs ffmpeg, for MP4)'
@@ -115,6 +116,11 @@ archive:
 	find $$files -type f -print0 | sort -z | xargs -0 sha256sum >results/SHA256SUMS; \
 	tar --create --file results/archive.tar --transform 's,^,rodsweep-$(shell git rev-parse --short HEAD)/,' results/SHA256SUMS $$files; \
 	ls -lh results/archive.tar
+
+# Systems to try guesses and preconditioners on outside of rodsweep, 350 MB, with reference counts of iterations.
+benchmark-data: build
+	@mkdir -p results; $(call study,benchmark)
+	@PATH="$$PWD/$(BUILD):$$PATH" $(PYTHON) analysis/benchmark_data.py results/benchmark.h5 -o results/benchmark
 
 # Variants of rods.h5 and lattices.h5 with one setting changed each: their validation results and their costs.
 variants: build

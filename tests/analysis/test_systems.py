@@ -1,5 +1,6 @@
 """`rodsweep systems` and matrices.py: the systems of a task are those that it solved, in every format."""
 
+import csv
 import json
 import os
 import subprocess
@@ -134,6 +135,25 @@ class Exported(unittest.TestCase):
                 made = scipy.sparse.bsr_matrix((npz["data"], npz["indices"], npz["indptr"]))
                 self.assertEqual(abs(made - system.A).max(), 0)
                 self.assertEqual(npz["mass_kg"].tolist(), system.of.mass_kg.tolist())
+
+    def test_benchmark_data_have_reference_counts_of_the_sweep_and_checksums(self):
+        file = self.swept(samples=3, solve={"preconditioner": {"grid": ["jacobi", "block_icc"]}})
+        done = run("benchmark_data.py", file, "-o", "data")
+        self.assertEqual(done.code, 0, done.stderr)
+        names = ["bending_rod-8-test-0", "bending_rod-8-tuning-0", "bending_rod-8-tuning-1"]
+        self.assertEqual(sorted(os.listdir("data")), ["README.md", "SHA256SUMS", *(f"{name}.h5" for name in names),
+                                                      "reference.csv"])
+        subprocess.run(["sha256sum", "--check", "--quiet", "SHA256SUMS"], cwd="data", check=True)
+        with open("data/reference.csv", encoding="utf-8", newline="") as table, h5py.File(file) as results:
+            rows = list(csv.reader(table))
+            self.assertEqual(rows[0][:5], ["systems", "preconditioner", "guess", "0.1", "0.01"])
+            self.assertEqual(len(rows), 1 + 3 * 2 * 2)
+            self.assertEqual([int(count) for count in rows[1][3:]], results["/tasks/iterations_sum"][0, 0].tolist())
+        with rodsweep.systems("data/bending_rod-8-test-0.h5") as systems:
+            self.assertEqual(len(systems), 11)
+        with open("data/README.md", encoding="utf-8") as card:
+            self.assertIn("33 systems A x = b of 3 simulations", card.read())
+        self.assertEqual(run("benchmark_data.py", file, "-o", "data").code, 0)    # goes on
 
     def test_what_is_no_system_is_refused(self):
         file = self.swept()
