@@ -43,7 +43,7 @@ help:
 	@echo 'make score         the cheapest way to an error of the motion, with and without guesses, by scene (an hour; likewise)'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (two hours; continued if it was stopped)'
 	@echo 'make archive       results of make score and make studies, models and tables, with checksums: results/archive.tar'
-	@echo 'make benchmark-data   linear systems for those who try guesses elsewhere, results/benchmark (a minute)'
+	@echo 'make benchmark-data   linear systems for those who try guesses elsewhere, results/benchmark (ten minutes)'
 	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
 	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (an hour and a half; likewise)'
 	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind, curves), draw their films (installs ffmpeg, for MP4)'
@@ -237,7 +237,8 @@ uninstall:
 	@prefix=$${DESTDIR:-}$$(realpath -m -- "$(PREFIX)"); list=$$prefix/$(installed); \
 	[ -e "$$list" ] || { echo "rodsweep: nothing was installed in $$prefix by this Makefile: there is no $$list" >&2; exit 1; }; \
 	sed "s:^:$${DESTDIR:-}:" "$$list" | tr '\n' '\0' | xargs -0 rm -f --; \
-	find "$$prefix"/share/{rodsweep,doc/rodsweep} -depth -type d -empty -delete; echo "Uninstalled from $$prefix."
+	for folder in {share,share/doc,include,lib}/rodsweep; do [ ! -d "$$prefix/$$folder" ] || find "$$prefix/$$folder" -depth -type d -empty -delete; done; \
+	echo "Uninstalled from $$prefix."
 
 clean:
 	@for folder in $(BUILD) $(BUILD)-{sanitize,fuzz,tidy,arm,portable,develop,debug}; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done

@@ -24,6 +24,7 @@ STYLES = {combinations.DIRECT: style.DIRECT,
           combinations.ZERO: style.GuessStyle(*style.KINDS["zero"]),
           combinations.CLASSICAL: style.GuessStyle(*style.KINDS["regression"]),
           combinations.LEARNED: style.GuessStyle(*style.KINDS["copingnet"]),
+          combinations.OWN: style.GuessStyle(*style.SPARE[0]),
           combinations.ORACLE: style.GuessStyle(*style.KINDS["oracle"])}
 NODES = "scene.nodes_x"
 COMPARED = (combinations.CLASSICAL, combinations.ZERO, combinations.DIRECT)

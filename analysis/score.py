@@ -8,6 +8,10 @@ all settings, of the direct solve, of CG from zero, from a classical and from a 
 preconditioner, of CG with Jacobi (the setting of Shao et al. 2021), and of Gauss-Seidel. rodsweep/reading/score.py
 defines error and time.
 
+With a guess in Python instead of files, FILE.py, the script runs these settings of all scenes (jobs/score/NAME_test.json, or
+the jobs that are given) here, and with each of CG's this guess too, and shows its row beside the others'. The others are
+then the cheapest on these draws. A stopped run goes on.
+
 Times are medians over test draws, of learned settings also over trainings (the models seeds/NAME-2.h5, ... beside
 NAME.h5). "÷ cheapest" is the median of the quotients with the cheapest of all, with its 95 % bootstrap interval; of
 learned settings that contains the intervals of all trainings. The last table has the time of the trainings. "-": no setting of this kind reached the error on the
@@ -15,10 +19,12 @@ tuning draws. An error in parentheses is above its level on the test draws.
 """
 
 import argparse
+import glob
 import json
 import os
 
 import numpy as np
+import rodsweep
 from rodsweep.drawing import layout, study, style
 from rodsweep.reading import commandline, intervals, job_paths, modelfile, score, texts
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
@@ -26,15 +32,21 @@ from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/score.py --jobs results/score/*_tuning.h5      # writes results/score/NAME_test.json
-  analysis/score.py results/score/*_tuning.h5             # once these jobs have run"""
+  analysis/score.py results/score/*_tuning.h5             # once these jobs have run
+  analysis/score.py my_guess.py jobs/score/net_test.json  # a guess of yours, on nets (docs/own-guess.md)"""
 ENDING = "_tuning.h5"
+JOBS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "jobs", "score", "*_test.json")
 
 
 def arguments():
     made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
-    made.add_argument("files", nargs="+", metavar="FILE", help=f"results of a tuning job, NAME{ENDING}")
-    made.add_argument("--jobs", action="store_true", help="write NAME_test.json for each file, and do no more")
+    made.add_argument("files", nargs="+", metavar="FILE",
+                      help=f"results of a tuning job, NAME{ENDING}; or a guess in Python and jobs")
+    made.add_argument("--jobs", action="store_true",
+                      help="write NAME_test.json for each file, into the folder of -o or beside it, and do no more")
+    made.add_argument("--workers", type=commandline.whole_number, default=os.cpu_count(), metavar="N",
+                      help="cores for a guess of yours (default: all)")
     made.add_argument("--samples", type=commandline.whole_number, default=10, metavar="N",
                       help="draws of the jobs that are written (default: 10)")
     study.add_figure_arguments(made)
@@ -44,25 +56,47 @@ def arguments():
 def main():
     options = arguments()
     scenes, models = {}, {}
+    if options.files[0].endswith(".py"):
+        print("\n".join(table(with_guess(options.files[0], options.files[1:] or sorted(glob.glob(JOBS)), options.workers))))
+        return
     for path in options.files:
         if not path.endswith(ENDING):
             raise KeyNotFound(f"{path}: the name of a tuning file ends in {ENDING}")
         with SweepFile(path) as file:
             found, job, labels, source = score.runs(file), file.job(), file.guesses, file.runs()[-1]["job"]
-            title = str(file.scene_types()[0]).replace("_", " ")
+            scene = title(file)
         if options.jobs:
             folder = os.path.dirname(source)
             made = score.test_job(job, labels, score.chosen(found).values(), options.samples, folder)
-            write_job(path.replace(ENDING, "_test.json"), made, folder)
+            test = path.replace(ENDING, "_test.json")
+            write_job(os.path.join(options.output, os.path.basename(test)) if options.output else test, made, folder)
         else:
             with SweepFile(path.replace(ENDING, "_test.h5")) as test:
-                scenes[title] = rows_of(score.chosen(found), score.runs(test))
+                scenes[scene] = rows_of(score.chosen(found), score.runs(test))
                 models |= models_of(test)
     if scenes:
         print("\n".join([*table(scenes), "", *trainings(models)]) + "\n\n")
         folder = options.output or os.path.join(os.path.dirname(options.files[0]), "figures")
         width = int(options.width)
         print("\n".join(figure(scenes, width).save(folder, "score", options.format, not options.no_caption)))
+
+
+def with_guess(guess, jobs, workers):
+    """The scenes of these jobs with a guess in Python: {title: rows_of()}, its results in results/."""
+    if not jobs:
+        raise KeyNotFound(f"there are no jobs {JOBS}: `make score` writes them, or give some")
+    scenes, entry = {}, {"python": {"file": os.path.abspath(guess)}}
+    for path in jobs:
+        job = rodsweep.Job.read(path)
+        name = f"{job.name}_{os.path.basename(guess).removesuffix('.py')}"
+        with job.changed(name=name, guesses=[*job.values.get("guesses", ["zero"]), entry]).run(workers) as results:
+            found = score.runs(results.file)
+            scenes[title(results.file)] = rows_of(score.chosen(found), found)
+    return scenes
+
+
+def title(file):
+    return str(file.scene_types()[0]).replace("_", " ")
 
 
 def write_job(path, job, folder):
@@ -106,15 +140,21 @@ def trainings(models):
     return texts.aligned(rows) if len(rows) > 1 else []
 
 
+def answers(scenes):
+    """Those to show: that of a guess of the user's only if there is one."""
+    own = any(answer == score.OWN for found in scenes.values() for _, answer in found)
+    return [answer for answer in score.ANSWERS if own or answer != score.OWN]
+
+
 def table(scenes):
     lines = []
-    for title, found in scenes.items():
+    for scene, found in scenes.items():
         for level in score.LEVELS:
             if not any(of == level for of, _ in found):
-                lines += [f"{title}, error {100 * level:g} %: reached by no setting on the tuning draws", ""]
+                lines += [f"{scene}, error {100 * level:g} %: reached by no setting on the tuning draws", ""]
                 continue
-            rows = [[f"{title}, error {100 * level:g} %", "ms/s", "÷ cheapest", "95 %", "products/s", "error there", "setting"]]
-            rows += [[answer, *cells(found.get((level, answer)), level)] for answer in score.ANSWERS]
+            rows = [[f"{scene}, error {100 * level:g} %", "ms/s", "÷ cheapest", "95 %", "products/s", "error there", "setting"]]
+            rows += [[answer, *cells(found.get((level, answer)), level)] for answer in answers(scenes)]
             lines += [*texts.aligned(rows), ""]
     return lines[:-1]
 
@@ -140,23 +180,23 @@ def interval(estimate):
 
 
 def figure(scenes, width_mm):
-    answers = score.ANSWERS[1:]    # the cheapest of all is one of the others
-    looks = dict(zip(answers, style.series_styles(len(answers))))
+    shown = answers(scenes)[1:]    # the cheapest of all is one of the others
+    looks = dict(zip(shown, style.series_styles(len(shown))))
     note = ["Wall time of a simulated second over the error of the trajectory: median over test draws with 95 % interval, "
             "settings chosen on other draws."]
     page = layout.Page(width_mm, ["Cheapest settings"], len(scenes), 4, 44, [look.handle(name) for name, look in looks.items()],
                        note, left_mm=12, gap_mm=4)
     seen = []
-    for column, (axes, (title, found)) in enumerate(zip(page.axes[0], scenes.items())):
+    for column, (axes, (scene, found)) in enumerate(zip(page.axes[0], scenes.items())):
         for shift, (answer, look) in enumerate(looks.items()):
             levels = [level for level in score.LEVELS if (level, answer) in found]
             times = [intervals.median(1e3 * runs.time_s, runs.draws) for runs in (found[level, answer][1][0] for level in levels)]
-            x = [level * 1.08 ** (shift - len(answers) // 2) for level in levels]
+            x = [level * 1.08 ** (shift - len(shown) // 2) for level in levels]
             y, low, high = (np.array([float(getattr(time, part)) for time in times]) for part in ("value", "low", "high"))
             style.errorbar(axes, x, y, yerr=style.whiskers(y, low, high), **look.line(), linewidth=0.9, markersize=2.8,
                            elinewidth=0.5)
             seen += [low, high, y]
-        page.title(axes, title)
+        page.title(axes, scene)
         page.label_y(axes, column, "ms per simulated second")
     seen = np.concatenate(seen) if seen else np.ones(1)
     for axes in page.axes[0]:

@@ -89,6 +89,7 @@ GuardedGuess::GuardedGuess(const Scene& scene, std::unique_ptr<InitialGuess> inn
 
 Proposal GuardedGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
   const Proposal inner = inner_->propose(system, at, x0);
+  used_ = true;
   if (!inner.nonzero) return inner;
   VectorX& residual = scratch_[static_cast<std::size_t>(at.rod)];
   if (inner.residual) {
@@ -100,12 +101,14 @@ Proposal GuardedGuess::propose(const LinearSystem& system, const SolvePosition& 
   const int products = inner.start_products();
   const double limit = threshold_ * threshold_ * jacobi_norm_squared(system.matrix(), system.rhs());
   if (jacobi_norm_squared(system.matrix(), residual) < limit) return {true, products, &residual, inner.renewed};
+  used_ = false;  // the residual of zero is not orthogonal to the space of a deflation
   x0.setZero();
   return {false, products, nullptr, inner.renewed};
 }
 
 Proposal FirstGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
-  if (at.newton == 0) return inner_->propose(system, at, x0);
+  used_ = at.newton == 0;
+  if (used_) return inner_->propose(system, at, x0);
   x0.setZero();
   return {};
 }

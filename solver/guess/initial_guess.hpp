@@ -101,11 +101,13 @@ class GuardedGuess : public InitialGuess {
   void prepare(const SolvePosition& at) override { inner_->prepare(at); }
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const SolvePosition& at, const VectorX& solution) override { inner_->accept(at, solution); }
+  Deflation* deflation() override { return used_ ? inner_->deflation() : nullptr; }
 
  private:
   std::unique_ptr<InitialGuess> inner_;
   double threshold_;
   std::vector<VectorX> scratch_;  ///< per rod
+  bool used_ = false;             ///< the last proposal of the inner guess
 };
 
 /// Uses another guess at the first Newton iteration of a step, zero at the others: for guesses trained on first ones.
@@ -119,9 +121,11 @@ class FirstGuess : public InitialGuess {
   void accept(const SolvePosition& at, const VectorX& solution) override {
     if (at.newton == 0) inner_->accept(at, solution);
   }
+  Deflation* deflation() override { return used_ ? inner_->deflation() : nullptr; }
 
  private:
   std::unique_ptr<InitialGuess> inner_;
+  bool used_ = false;  ///< at the last proposal
 };
 
 }  // namespace rodsweep

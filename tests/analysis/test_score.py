@@ -36,7 +36,7 @@ class Choice(unittest.TestCase):
     def test_each_answer_is_the_fastest_of_its_kind_that_reaches_the_error(self):
         best = score.chosen(self.FOUND)
         self.assertEqual({answer: best.get((0.1, answer)) for answer in score.ANSWERS}, {
-            "cheapest of all": setting("copingnet rods"), "direct solve": setting(method="direct"), "Gauss-Seidel": None,
+            "cheapest of all": setting("copingnet rods"), "direct solve": setting(method="direct"), "Gauss-Seidel": None, "your guess": None,
             "CG from zero": setting("zero", "block_icc"),
             "CG, classical guess": setting("previous"), "CG, learned guess": setting("copingnet rods"),
             "CG, learned preconditioner": setting("previous", "learned rods"),
@@ -148,8 +148,26 @@ class Files(unittest.TestCase):
             "bending rod, error 0.01 %: reached by no setting on the tuning draws", "model"])
         self.assertRegex(blocks[-1][1], r"^rods +[\d.]+ +120$")
         self.assertRegex(blocks[0][1], r"cheapest of all +[\d.]+ +1 +1 to 1 ")
-        self.assertEqual([line.split("  ")[0] for line in blocks[0][1:]], list(score.ANSWERS))
+        self.assertEqual([line.split("  ")[0] for line in blocks[0][1:]], list(score.ANSWERS[:-1]))
         self.assertIn(os.path.join(self.folder.name, "score.png"), done.stdout)
+
+    def test_a_guess_in_python_has_its_row_beside_the_others(self):
+        here = os.getcwd()
+        self.addCleanup(os.chdir, here)
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            done = run("score.py", "--jobs", self.tuning, "-o", ".")
+            self.assertEqual(done.code, 0, done.stderr)
+            with open("half.py", "w", encoding="utf-8") as file:
+                file.write("class Guess:\n    def __init__(self, rods, options): pass\n"
+                           "    def propose(self, system): return 0 * system.b\n")
+            done = run("score.py", "half.py", "rod_test.json", "--workers", "1")
+            self.assertEqual(done.code, 0, done.stderr)
+            block = done.stdout.split("\n\n")[0].splitlines()
+            self.assertEqual([line.split("  ")[0] for line in block[1:]], list(score.ANSWERS))
+            self.assertRegex(block[-1], r"^your guess +[\d.]+ .* from python half ")
+            again = run("score.py", "half.py", "rod_test.json", "--workers", "1")
+            self.assertEqual(again.stdout, done.stdout)    # of the same results
 
 
 if __name__ == "__main__":

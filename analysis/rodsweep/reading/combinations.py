@@ -3,7 +3,7 @@
 A combination is a preconditioner, with the settings that the job sweeps, and a guess; or the direct solve. Paired
 combinations solve the same systems, in a closed loop each has its own trajectory. The time is that of a solve with
 guess and preconditioner set-up, or in a closed loop of a whole step. Kinds of guesses: CG from zero, classical ones,
-learned ones, and oracles, which know the solution. A paired oracle's own time is not counted: it is a free guess.
+learned ones, those of the user's plug-ins, and oracles, which know the solution. A paired oracle's own time is not counted: it is a free guess.
 """
 
 import os
@@ -18,8 +18,8 @@ MODEL = "solve.learned_preconditioner.model"
 SETTINGS = {"solve.fill_levels": "levels", "solve.lag_steps": "lag"}
 AXES = (PRECONDITIONER, *SETTINGS)
 WITH_LEVELS = ("block_icc", "condensed")
-DIRECT, ZERO, CLASSICAL, LEARNED, ORACLE = KINDS = ("direct", "from zero", "classical guess", "learned guess",
-                                                    "free oracle")
+DIRECT, ZERO, CLASSICAL, LEARNED, OWN, ORACLE = KINDS = ("direct", "from zero", "classical guess", "learned guess",
+                                                         "own guess", "free oracle")
 
 
 @dataclass(frozen=True)
@@ -56,6 +56,8 @@ def kind_of(guess):
         return ZERO
     if "oracle" in guess:
         return ORACLE
+    if "python" in guess or "plugin" in guess:
+        return OWN
     return LEARNED if "copingnet" in guess or "knn" in guess else CLASSICAL
 
 

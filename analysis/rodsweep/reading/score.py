@@ -26,10 +26,10 @@ from rodsweep.reading.errors import KeyNotFound
 
 LEVELS = (1e-1, 1e-2, 1e-3, 1e-4)
 ALL, DIRECT, JACOBI, GAUSS_SEIDEL = "cheapest of all", "direct solve", "CG, Jacobi", "Gauss-Seidel"
-LEARNED_PRECONDITIONER = "CG, learned preconditioner"
+LEARNED_PRECONDITIONER, OWN = "CG, learned preconditioner", "your guess"
 _OF_KIND = {combinations.ZERO: "CG from zero", combinations.CLASSICAL: "CG, classical guess",
             combinations.LEARNED: "CG, learned guess"}
-ANSWERS = (ALL, DIRECT, *_OF_KIND.values(), LEARNED_PRECONDITIONER, JACOBI, GAUSS_SEIDEL)
+ANSWERS = (ALL, DIRECT, *_OF_KIND.values(), LEARNED_PRECONDITIONER, JACOBI, GAUSS_SEIDEL, OWN)
 CLIPPED = 5
 REST, SOLVE = "/timing/steps/rest_s", "/timing/steps/solve_s"
 STEP, INTEGRATOR = "time.step_s", "time.integrator"
@@ -50,6 +50,8 @@ class Setting:
         way = self.way
         if way.method != "cg":
             return {ALL, {"direct": DIRECT, "xpbd": GAUSS_SEIDEL, "pbd": GAUSS_SEIDEL}.get(way.method, ALL)}
+        if combinations.kind_of(way.guess) == combinations.OWN:
+            return {OWN}
         if way.preconditioner.startswith("learned"):
             return {ALL, LEARNED_PRECONDITIONER}
         kind = _OF_KIND.get(combinations.kind_of(way.guess))

@@ -29,6 +29,26 @@ TEST_CASE("without history there is nothing to project out") {
   CHECK(x0.isZero(0));
 }
 
+TEST_CASE("guesses that use a deflating guess deflate when they use it") {
+  OneRod one;
+  VectorX x0(one.size());
+  const auto inner = [&] {
+    auto guess = std::make_unique<SubspaceGuess>(deflating(one.scene, 3));
+    guess->accept({0, 0, 0}, one.exact);
+    return guess;
+  };
+  FirstGuess first(inner());
+  CHECK(first.propose(one.system, {1, 0, 0}, x0).nonzero);
+  CHECK(first.deflation() != nullptr);
+  CHECK_FALSE(first.propose(one.system, {1, 1, 0}, x0).nonzero);
+  CHECK(first.deflation() == nullptr);
+  GuardedGuess kept(one.scene, inner(), 1), refused(one.scene, inner(), 1e-30);
+  CHECK(kept.propose(one.system, {1, 0, 0}, x0).nonzero);
+  CHECK(kept.deflation() != nullptr);
+  CHECK_FALSE(refused.propose(one.system, {1, 0, 0}, x0).nonzero);
+  CHECK(refused.deflation() == nullptr);
+}
+
 TEST_CASE(
     "a deflating guess starts where subspace does, and projects to what is A-orthogonal to the stored solutions") {
   OneRod one;

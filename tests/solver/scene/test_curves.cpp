@@ -141,6 +141,40 @@ TEST_CASE("a straight rest shape straightens a bent curve, a drawn one keeps it"
   }
 }
 
+// A frame of two legs, clamped at its foot and loaded across its plane at the tip, by the theory of beams: both legs bend,
+// and the first is twisted by the second.
+TEST_CASE("an L-shaped frame sags as beams do, in one curve or in two") {
+  constexpr double first = 1, second = 0.5, load_n = 1e-3;
+  const Vector3 foot(0, 0, 0), corner(first, 0, 0), end(first, 0, second);
+  for (const auto& drawn :
+       {std::vector<Curve>{line({foot, corner, end})}, {line({end, corner}), line({foot, corner})}}) {
+    Curves p = curves(drawn, 0.025);
+    p.radius_m = 0.02;
+    p.youngs_modulus_pa = 1e6;
+    p.torsion_modulus_pa = 4e5;
+    p.gravity_m_s2.setZero();
+    p.stretch = Stretch::physical;
+    p.how.held_at_m = {foot};
+    p.prescribed.loads.push_back({end, {0, load_n, 0}, {0, 0, 0}, {}});
+    Simulation simulation(build_scene(p), 1, 40, 1e-10);
+    simulation.relax(1e-10);
+    const double inertia = pi * std::pow(p.radius_m, 4) / 4, area = pi * p.radius_m * p.radius_m;
+    const double bending = 1 / (3 * p.youngs_modulus_pa * inertia), twisting = 1 / (p.torsion_modulus_pa * 2 * inertia);
+    const double shear =
+        1 / (circle(p.radius_m, poisson_number(1e6, 4e5)).shear_coefficient * p.torsion_modulus_pa * area);
+    const double expected = load_n * (bending * (std::pow(first, 3) + std::pow(second, 3)) +
+                                      twisting * first * second * second + shear * (first + second));
+    Vector3 tip(0, 0, 0);  // the end of a segment that is the farthest along z
+    const Rod& rod = simulation.rod();
+    for (std::size_t s = 0; s < rod.segments.size(); ++s)
+      for (const double side : {-0.5, 0.5}) {
+        const Vector3 at = rod.position[s] + side * rod.segments[s].length_m * director(rod.orientation[s]);
+        if (at.z() > tip.z()) tip = at;
+      }
+    CHECK(tip.y() == Approx(expected).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("a spline through points of a circle is a circle, also through its ends") {
   for (const bool closed : {false, true}) {
     std::vector<Vector3> points;
