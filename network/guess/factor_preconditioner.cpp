@@ -26,7 +26,7 @@ FactorPreconditioner::FactorPreconditioner(std::shared_ptr<const Model> model, c
 
 bool FactorPreconditioner::set_up(const BlockMatrix& a) {
   encoder_.encode(rod_, system_, 0, zero_, system_.rhs(), nodes_, edges_);  // factors do not see the residual
-  factors_.factorise(encoder_, edges_, a);
+  factors_.factorise(encoder_, edges_, a, true);
   return true;
 }
 

@@ -11,11 +11,12 @@ LearnedFactors::LearnedFactors(const Model& model, const FeatureEncoder& encoder
                                               encoder.pattern());
 }
 
-void LearnedFactors::factorise(const FeatureEncoder& encoder, const Tensor<float>& edges, const BlockMatrix& a) {
+void LearnedFactors::factorise(const FeatureEncoder& encoder, const Tensor<float>& edges, const BlockMatrix& a,
+                               bool positive) {
   if (coupled_)
     coupled_->factorise(encoder.system()->frames(), a);
   else
-    tree_->factorise(edges, encoder.system()->frames(), a);
+    tree_->factorise(edges, encoder.system()->frames(), a, positive);
 }
 
 void LearnedFactors::solve(const VectorX& r, VectorX& z) {

@@ -16,8 +16,10 @@ class LearnedFactors {
   /// Those of a model with factors, which must outlive it.
   LearnedFactors(const Model& model, const FeatureEncoder& encoder);
 
-  /// Predicts the factors of `a`, for which the encoder encoded `edges`.
-  void factorise(const FeatureEncoder& encoder, const Tensor<float>& edges, const BlockMatrix& a);
+  /// Predicts the factors of `a`, for which the encoder encoded `edges`. `positive`: F is positive definite; those of all
+  /// couplings always are.
+  void factorise(const FeatureEncoder& encoder, const Tensor<float>& edges, const BlockMatrix& a,
+                 bool positive = false);
   void solve(const VectorX& r, VectorX& z);
 
  private:

@@ -1,5 +1,7 @@
 #include "network/processor/factor_inference.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <stdexcept>
 #include <string>
 
@@ -9,6 +11,24 @@ namespace rodsweep {
 namespace {
 
 using namespace lane16;
+
+/// Replaces a symmetric matrix, its lower triangle by columns, by the one with the magnitudes of its eigenvalues, at
+/// least a thousandth of the largest, unless it is positive definite.
+void make_positive(float* triangle) {
+  using Matrix6f = Eigen::Matrix<float, 6, 6>;
+  Matrix6f n;
+  const float* from = triangle;
+  for (int c = 0; c < 6; ++c)
+    for (int r = c; r < 6; ++r) n(r, c) = *from++;
+  if (!Eigen::Map<const Eigen::Matrix<float, 21, 1>>(triangle).allFinite()) return;
+  if (n.selfadjointView<Eigen::Lower>().llt().info() == Eigen::Success) return;
+  const Eigen::SelfAdjointEigenSolver<Matrix6f> of(n);  // reads the lower triangle
+  Eigen::Matrix<float, 6, 1> magnitudes = of.eigenvalues().cwiseAbs();
+  magnitudes = magnitudes.cwiseMax(1e-3F * magnitudes.maxCoeff());
+  n = of.eigenvectors() * magnitudes.asDiagonal() * of.eigenvectors().transpose();
+  for (int c = 0; c < 6; ++c)
+    for (int r = c; r < 6; ++r) *triangle++ = n(r, c);
+}
 
 }  // namespace
 
@@ -47,7 +67,8 @@ FactorInference::FactorInference(const FactorSweeps<float>& sweeps, const Parame
   factors_.resize(48, n);
 }
 
-void FactorInference::factorise(const TensorIn<float>& x, const CanonicalFrames& frames, const BlockMatrix& a) {
+void FactorInference::factorise(const TensorIn<float>& x, const CanonicalFrames& frames, const BlockMatrix& a,
+                                bool positive) {
   using Sweep = FactorSweeps<float>;
   const Eigen::Index h = g_.rows();
   const int n = forest_.size();
@@ -78,6 +99,8 @@ void FactorInference::factorise(const TensorIn<float>& x, const CanonicalFrames&
     for (Eigen::Index r = 0; r < h; r += lane_floats)
       store_narrow(g_.col(i).data() + r, ramp(load_lane(before_.col(i).data() + r)));
   last_.multiply(last_bias_.data(), g_, factors_);
+  if (positive)
+    for (int i = 0; i < n; ++i) make_positive(factors_.col(i).data());
   for (int i = 0; i < n; ++i) form(i, frames, a);
 }
 

@@ -24,8 +24,10 @@ class FactorInference {
   FactorInference(const FactorSweeps<float>& sweeps, const Parameters<float>& weights, const JointForest& forest,
                   const SystemPattern& pattern);
 
-  /// Sets the factors of a matrix from its features [57, places] (without the residual) and its frames.
-  void factorise(const TensorIn<float>& x, const CanonicalFrames& frames, const BlockMatrix& a);
+  /// Sets the factors of a matrix from its features [57, places] (without the residual) and its frames. With `positive`
+  /// negative eigenvalues of the N_k change their sign: then the factors are positive definite, since they are
+  /// L^T N L with a triangular L.
+  void factorise(const TensorIn<float>& x, const CanonicalFrames& frames, const BlockMatrix& a, bool positive = false);
 
   /// Sets d to the factors' solution for a residual r of the matrix.
   void solve(const VectorX& r, VectorX& d);

@@ -124,7 +124,8 @@ Json JobReader::read_sweep(const Key& key, const Json& value, const std::string&
   const std::string word = sweep_word(value);
   const Json& content = value[word];
   if (!key.sweepable) {
-    mistake(path, "this key cannot be swept" + (key.no_sweep_advice.empty() ? "" : "; " + key.no_sweep_advice));
+    mistake(path.empty() ? word : path,
+            "this key cannot be swept" + (key.no_sweep_advice.empty() ? "" : "; " + key.no_sweep_advice));
     return value;
   }
   if (value.size() != 1) {

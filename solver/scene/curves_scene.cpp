@@ -40,7 +40,7 @@ class Builder {
   std::vector<Rod> rods() {
     const auto count = at(graph_.components);
     std::vector<std::vector<SegmentSpec>> segments(count);
-    std::vector<std::vector<JointSpec>> joints(count);
+    std::vector<std::vector<Placed>> joints(count);
     std::vector<double> force_n(count);
     number_.resize(graph_.edges.size());
     for (std::size_t e = 0; e < graph_.edges.size(); ++e) {
@@ -56,22 +56,40 @@ class Builder {
       if (graph_.nodes[n].held) {
         const auto wall = static_cast<int>(segments[c].size());
         segments[c].push_back(held_point(graph_.nodes[n].position_m, backward(own.front()).normalized()));
-        for (const End& end : own) joints[c].push_back(clamped(wall, segments[c].back(), end, force_n[c]));
+        for (const End& end : own)
+          joints[c].push_back(
+              {2 * end.edge + (end.is_last ? 1 : -1), clamped(wall, segments[c].back(), end, force_n[c])});
       } else if (own.size() == 2) {
-        joints[c].push_back(joined(own[0], half(own[0]), own[1], half(own[1]), true, force_n[c]));
+        joints[c].push_back(
+            {between(own[0], own[1]), joined(own[0], half(own[0]), own[1], half(own[1]), true, force_n[c])});
       } else if (own.size() > 2) {
         const End& widest = hub_[hub++];
         for (const End& end : own)
           if (end.edge != widest.edge || end.is_last != widest.is_last)
-            joints[c].push_back(joined(widest, Softness(), end, half(end), false, force_n[c]));
+            joints[c].push_back({between(widest, end), joined(widest, Softness(), end, half(end), false, force_n[c])});
       }
     }
     std::vector<Rod> out;
-    for (std::size_t c = 0; c < count; ++c) out.emplace_back(segments[c], joints[c]);
+    for (std::size_t c = 0; c < count; ++c) out.emplace_back(segments[c], in_order(joints[c]));
     return out;
   }
 
  private:
+  /// Joints are numbered along the curves. A joint at the end of edge e has the place 2 e + 1.
+  struct Placed {
+    int place;
+    JointSpec joint;
+  };
+  static std::vector<JointSpec> in_order(const std::vector<Placed>& joints) {
+    std::vector<std::pair<int, std::size_t>> order;
+    for (std::size_t k = 0; k < joints.size(); ++k) order.emplace_back(joints[k].place, k);
+    std::sort(order.begin(), order.end());
+    std::vector<JointSpec> out;
+    for (const auto& [place, k] : order) out.push_back(joints[k].joint);
+    return out;
+  }
+  static int between(const End& a, const End& b) { return 2 * std::max(a.edge, b.edge) - 1; }
+
   void add_segment(const CurveEdge& edge) {
     const Vector3 along = edge.to_m - edge.from_m;
     const bool goes_on = !segments_.empty() && graph_.edges[segments_.size() - 1].curve == edge.curve;

@@ -1,4 +1,5 @@
 // Learned factors: gradients, the properties that they share with A^-1, inference.
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
 #include "network/encoding/feature_encoder.hpp"
@@ -148,6 +149,41 @@ TEST_CASE("inference of factors gives the training code's answers, as exactly as
         CHECK((d - expected).norm() < (narrow_bits == 16 ? 3e-3 : 1e-5) * expected.norm());
       }
     }
+}
+
+TEST_CASE("factors that are made positive are positive definite, and the same where they were") {
+  const Rod rod = random_rod(tree(3, 2), {0}, 3);
+  const LinearSystem system = assembled(rod);
+  const CopingNetSettings settings;
+  FeatureEncoder encoder(settings, rod, system.matrix());
+  const JointForest& forest = encoder.topology().forest;
+  Tensor<float> nodes(0, rod.segment_count()), x(SystemEncoding::size, forest.size());
+  const int size = 6 * forest.size();
+  encoder.encode(rod, system, 0, VectorX(), VectorX::Ones(size), nodes, x);
+  for (const float scale : {0.001F, 1.0F}) {
+    Net<float> net(16);
+    net.weights[net.sweeps.layers().factors.weight()] *= scale;
+    FactorInference inference(net.sweeps, net.weights, forest, encoder.pattern());
+    const auto dense = [&](bool positive) {
+      inference.factorise(x, encoder.system()->frames(), system.matrix(), positive);
+      MatrixX out(size, size);
+      VectorX column(size);
+      for (int k = 0; k < size; ++k) {
+        inference.solve(VectorX::Unit(size, k), column);
+        out.col(k) = column;
+      }
+      // In the metric of A's diagonal, where single precision resolves all eigenvalues.
+      const VectorX d = system.matrix().dense().diagonal().cwiseSqrt();
+      return MatrixX(d.asDiagonal() * (out + out.transpose()) / 2 * d.asDiagonal());
+    };
+    const MatrixX as_predicted = dense(false), positive = dense(true);
+    const auto least = [](const MatrixX& m) {
+      return Eigen::SelfAdjointEigenSolver<MatrixX>(m).eigenvalues().minCoeff();
+    };
+    CHECK((least(as_predicted) > 0) == (scale < 1));
+    CHECK(least(positive) > 0);
+    CHECK(positive.isApprox(as_predicted, 1e-6) == (scale < 1));
+  }
 }
 
 TEST_CASE("a latent size without a kernel for factors is refused") {

@@ -64,6 +64,9 @@ TEST_CASE("a straight curve with a held end is the bending rod with a wall") {
   CHECK(size_of(p).segments == found.rods[0].segment_count());
   CHECK(size_of(p).joints == found.rods[0].joint_count());
   REQUIRE(found.rods[0].joint_count() == expected.rods[0].joint_count());
+  const std::vector<Joint>& joints = found.rods[0].joints;
+  for (std::size_t k = 1; k < joints.size(); ++k)  // numbered along the curve
+    CHECK((joints[k].a == joints[k - 1].b || joints[k].a == joints[k - 1].a));
   for (const Stretch stretch : {Stretch::inextensible, Stretch::physical}) {
     rod.stretch = p.stretch = stretch;
     Simulation own(build_scene(p), 0.01), other(build_scene(rod), 0.01);
