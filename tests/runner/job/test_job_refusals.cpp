@@ -223,7 +223,7 @@ TEST_CASE("a sweep that its key does not take is refused") {
       {with("/scene/clamp", R"({"uniform": [0, 2]})"), "scene.clamp.uniform: uniform draws a number",
        "\"segment\", \"wall\", \"free\""},
       {with("/samples", R"({"grid": [1, 2]})"), "samples: this key cannot be swept"},
-      {grid({small_job(), small_job()}), "this key cannot be swept", "sweep a value instead"},
+      {grid({small_job(), small_job()}), "grid: this key cannot be swept", "sweep a value instead"},
       {guesses(R"({"grid": [["zero"], ["zero", "previous"]]})"), "guesses: this key cannot be swept",
        "sweep one guess of the list"},
       {with("/scene/type", R"({"grid": ["bending_rod", "helix"]})"), "scene.type: this key cannot be swept",
