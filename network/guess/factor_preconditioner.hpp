@@ -1,6 +1,6 @@
 // The learned factors of a rod's matrix as preconditioner of CG: z = F r (learned_factors.hpp). F is symmetric,
-// and made positive definite. Learned preconditioners of other kinds: Li et al. 2023 (NeuralPCG), Häusner et al. 2023 (NeuralIF), Trifonov et al.
-// 2024 (PreCorrector).
+// and made positive definite. Learned preconditioners of other kinds: Li et al. 2023 (NeuralPCG), Häusner et al. 2023
+// (NeuralIF), Trifonov et al. 2024 (PreCorrector).
 #pragma once
 
 #include <memory>

@@ -6,11 +6,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <map>
 #include <sstream>
 #include <utility>
 
+#include "runner/job/parsed_file.hpp"
 #include "runner/job/strict_json.hpp"
 #include "runner/text/key_path.hpp"
 #include "runner/text/shortened.hpp"
@@ -214,13 +213,7 @@ std::vector<Curve> parse_curves(const std::string& text, const std::filesystem::
 }
 
 const std::vector<Curve>& shared_curves(const std::filesystem::path& file, const std::string& hash) {
-  static std::map<std::pair<std::filesystem::path, std::string>, std::vector<Curve>> files;
-  if (const auto known = files.find({file, hash}); known != files.end()) return known->second;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (in) text << in.rdbuf();
-  if (!in) throw CurveError(file.native() + ": cannot be read");
-  return files.emplace(std::pair(file, hash), parse_curves(text.str(), file)).first->second;
+  return parsed_once<CurveError>(file, hash, parse_curves);
 }
 
 }  // namespace rodsweep

@@ -7,12 +7,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <utility>
 #include <vector>
 
+#include "runner/job/parsed_file.hpp"
 #include "runner/text/shortened.hpp"
 
 namespace rodsweep {
@@ -248,13 +248,7 @@ SkeletonFile parse_skeleton(const std::string& text, const std::filesystem::path
 }
 
 const SkeletonFile& shared_skeleton(const std::filesystem::path& file, const std::string& hash) {
-  static std::map<std::pair<std::filesystem::path, std::string>, SkeletonFile> files;
-  if (const auto known = files.find({file, hash}); known != files.end()) return known->second;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (in) text << in.rdbuf();
-  if (!in) throw SkeletonError(file.native() + ": cannot be read");
-  return files.emplace(std::pair(file, hash), parse_skeleton(text.str(), file)).first->second;
+  return parsed_once<SkeletonError>(file, hash, parse_skeleton);
 }
 
 }  // namespace rodsweep

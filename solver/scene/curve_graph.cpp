@@ -5,10 +5,8 @@
 #include <boost/math/interpolators/catmull_rom.hpp>
 #include <cmath>
 #include <map>
-#include <numeric>
-#include <sstream>
 
-#include "solver/rod/rod.hpp"
+#include "solver/scene/scene_parts.hpp"
 
 namespace rodsweep {
 namespace {
@@ -19,12 +17,6 @@ struct Sample {
   double radius;
   int given;  ///< index, -1 between them
 };
-
-std::string text(const Vector3& point) {
-  std::ostringstream out;
-  out << '[' << point.x() << ", " << point.y() << ", " << point.z() << ']';
-  return out.str();
-}
 
 /// Numbers points; those within a tolerance have one number.
 class Places {
@@ -114,7 +106,7 @@ void check(const Curve& curve, double tolerance) {
     throw SceneError(curve.name + " has " + std::to_string(curve.points.size()) + " points; must have at least 2");
   for (std::size_t i = 1; i < curve.points.size(); ++i)
     if ((curve.points[i] - curve.points[i - 1]).norm() <= 2 * tolerance)
-      throw SceneError("point " + std::to_string(i + 1) + " of " + curve.name + " is at " + text(curve.points[i]) +
+      throw SceneError("point " + std::to_string(i + 1) + " of " + curve.name + " is at " + text_of(curve.points[i]) +
                        ", as the one before; must be farther away than twice join_m, " + std::to_string(2 * tolerance) +
                        " m");
   for (std::size_t i = 0; i < curve.radii.size(); ++i)
@@ -215,7 +207,8 @@ CurveGraph cut(const std::vector<Curve>& curves, double radius, const CurveCut& 
     }
   for (const Vector3& point : how.held_at_m) {
     const int place = places.find(point);
-    if (place < 0) throw SceneError("held_at_m has " + text(point) + ", which is no point of a curve (within join_m)");
+    if (place < 0)
+      throw SceneError("held_at_m has " + text_of(point) + ", which is no point of a curve (within join_m)");
     is_node[static_cast<std::size_t>(place)] = held[static_cast<std::size_t>(place)] = 1;
   }
 

@@ -33,7 +33,7 @@ struct CurveGraph {
   struct Node {
     Vector3 position_m;
     bool held = false;
-    std::vector<int> edges;  ///< that begin or end here; twice if both
+    std::vector<int> edges;  ///< that begin or end here
   };
   std::vector<Node> nodes;
   std::vector<CurveEdge> edges;  ///< in the order of the curves and along each

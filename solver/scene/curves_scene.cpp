@@ -1,11 +1,9 @@
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 #include <utility>
 
 #include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_parts.hpp"
-#include "solver/scene/softness.hpp"
 
 namespace rodsweep {
 namespace {
@@ -48,7 +46,7 @@ class Builder {
       number_[e] = static_cast<int>(segments[c].size());
       segments[c].push_back(segments_[e]);
     }
-    for (std::size_t c = 0; c < count; ++c) force_n[c] = weight(segments[c], p_) + p_.prescribed.largest_force_n();
+    for (std::size_t c = 0; c < count; ++c) force_n[c] = weight(segments[c], p_);
     std::size_t hub = 0;
     for (std::size_t n = 0; n < graph_.nodes.size(); ++n) {
       const auto c = at(graph_.component[n]);
@@ -96,8 +94,7 @@ class Builder {
     const Quaternion before = goes_on ? segments_.back().orientation : Quaternion::Identity();
     const Quaternion orientation = turn_between(before * Vector3::UnitZ(), along) * before;
     SegmentSpec segment = segment_at(edge.from_m + along / 2, orientation.normalized(), along.norm(), p_);
-    const double a = edge.from_radius, b = edge.to_radius;
-    segment.radius_m = a == b ? a : std::sqrt((a * a + a * b + b * b) / 3);
+    segment.radius_m = mean_radius(edge.from_radius, edge.to_radius);
     segment.density_kg_m3 = curve(edge).density_kg_m3.value_or(p_.density_kg_m3);
     segments_.push_back(segment);
   }
@@ -109,11 +106,7 @@ class Builder {
   std::vector<End> ends(const CurveGraph::Node& node) const {
     std::vector<End> out;
     const int number = static_cast<int>(&node - graph_.nodes.data());
-    for (std::size_t i = 0; i < node.edges.size(); ++i) {
-      const CurveEdge& edge = graph_.edges[at(node.edges[i])];
-      const bool again = i > 0 && node.edges[i] == node.edges[i - 1];  // a loop of one edge
-      out.push_back({node.edges[i], again || edge.from != number});
-    }
+    for (const int edge : node.edges) out.push_back({edge, graph_.edges[at(edge)].to == number});
     return out;
   }
 
@@ -159,7 +152,7 @@ class Builder {
     const Series series = in_series(of_a, of_b, rest);
     joint.rest = (outwards(a) * rest * inwards(b).conjugate()).normalized();
     joint.frame = (outwards(a) * series.frame).normalized();
-    set_compliance(joint, series, (segments_[at(a.edge)].length_m + segments_[at(b.edge)].length_m) / 2, force_n);
+    set_compliance(joint, series, (segments_[at(a.edge)].length_m + segments_[at(b.edge)].length_m) / 2, force_n, p_);
     return joint;
   }
 
@@ -172,17 +165,8 @@ class Builder {
     const Series series = in_series(Softness(), half(end), rest);
     joint.rest = (rest * inwards(end).conjugate()).normalized();
     joint.frame = series.frame;
-    set_compliance(joint, series, segments_[at(end.edge)].length_m / 2, force_n);
+    set_compliance(joint, series, segments_[at(end.edge)].length_m / 2, force_n, p_);
     return joint;
-  }
-
-  void set_compliance(JointSpec& joint, const Series& series, double length, double force_n) const {
-    if (p_.stretch == Stretch::physical)
-      joint.compliance_per_j.head<3>() = series.stretch / (length * length);
-    else
-      joint.compliance_per_j.head<3>().setConstant(
-          p_.stretch_compliance_per_j.value_or(inextensible_compliance(length, force_n)));
-    joint.compliance_per_j.tail<3>() = series.bend;
   }
 
   const Curves& p_;
@@ -198,11 +182,11 @@ class Builder {
 
 void Curves::check() const {
   if (!curves) throw SceneError("curves need a file");
-  check_segments("curves", size().segments);
 }
 
 SceneSize Curves::size() const {
   const CurveGraph graph = cut(in_metres(*this), radius_m, how);
+  check_segments("curves", static_cast<double>(graph.edges.size()));
   SceneSize size{static_cast<int>(graph.edges.size()), 0, graph.components, "the number of unconnected curves"};
   for (const CurveGraph::Node& node : graph.nodes) {
     const int edges = static_cast<int>(node.edges.size());

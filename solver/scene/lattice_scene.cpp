@@ -169,9 +169,8 @@ void Lattice::build(Scene& scene) const {
       [&](int a, int b) { joints.push_back(joint_between(segments_, a, b, *this, force)); },
       [&](int a, int b) {
         const double length = segments_[static_cast<std::size_t>(a)].length_m;
-        const double soft = stretch == Stretch::physical
-                                ? 1 / (shifting * length * length)
-                                : stretch_compliance_per_j.value_or(inextensible_compliance(length, force));
+        const double soft =
+            stretch == Stretch::physical ? 1 / (shifting * length * length) : stretch_compliance(length, force, *this);
         joints.push_back(crossing_between(a, b, turning, soft));
       });
   scene.rods.emplace_back(segments_, joints);

@@ -6,16 +6,10 @@
 #include <sstream>
 #include <utility>
 
-#include "solver/scene/scene.hpp"
+#include "solver/scene/scene_parts.hpp"
 
 namespace rodsweep {
 namespace {
-
-std::string text(const Vector3& point) {
-  std::ostringstream out;
-  out << '[' << point.x() << ", " << point.y() << ", " << point.z() << ']';
-  return out.str();
-}
 
 /// A point of the axis of a segment.
 struct Place {
@@ -50,7 +44,7 @@ void check_near(const Scene& scene, const Place& place, const char* what, const 
   const double most = std::max(found.radius_m, found.length_m);
   if (place.distance_m <= most) return;
   std::ostringstream out;
-  out << what << " at " << text(at_m) << " is " << place.distance_m
+  out << what << " at " << text_of(at_m) << " is " << place.distance_m
       << " m away from the nearest segment; must be at most " << most << " m away";
   throw SceneError(out.str());
 }
@@ -59,7 +53,7 @@ void add(const PrescribedLoad& load, Scene& scene) {
   const Place place = nearest(scene, load.at_m, false);
   check_near(scene, place, "a load", load.at_m);
   if (segment(scene, place).is_static)
-    throw SceneError("a load at " + text(load.at_m) + " is on a held segment; must be on one that can move");
+    throw SceneError("a load at " + text_of(load.at_m) + " is on a held segment; must be on one that can move");
   scene.loads.push_back(
       {place.rod, place.segment, load.force_n, load.torque_nm, Vector3(0, 0, place.along_m), load.schedule});
 }
@@ -94,7 +88,7 @@ void add(const std::vector<PrescribedMotion>& motions, Scene& scene) {
     check_near(scene, place, "a motion of a clamp", motion.at_m);
     for (const MovingClamp& clamp : scene.clamps)
       if (clamp.rod == place.rod && clamp.segment == place.segment)
-        throw SceneError("the clamp at " + text(motion.at_m) + " is moved by the scene itself; must be another");
+        throw SceneError("the clamp at " + text_of(motion.at_m) + " is moved by the scene itself; must be another");
     const Rod& rod = scene.rods[static_cast<std::size_t>(place.rod)];
     const auto s = static_cast<std::size_t>(place.segment);
     Moved& own = moved[{place.rod, place.segment}];

@@ -1,6 +1,7 @@
 #include "solver/scene/scene_parts.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 
 #include "solver/linear/interruption.hpp"
@@ -101,10 +102,21 @@ JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, 
   joint.arm_b_m = Vector3(0, 0, -length_b / 2);
   joint.compliance_per_j = p.stretch == Stretch::physical
                                ? physical_compliance(length, section)
-                               : joint_compliance(length, section,
-                                                  p.stretch_compliance_per_j.value_or(inextensible_compliance(
-                                                      length, force_n + p.prescribed.largest_force_n())));
+                               : joint_compliance(length, section, stretch_compliance(length, force_n, p));
   return joint;
+}
+
+double stretch_compliance(double length_m, double force_n, const RodParameters& p) {
+  return p.stretch_compliance_per_j.value_or(
+      inextensible_compliance(length_m, force_n + p.prescribed.largest_force_n()));
+}
+
+void set_compliance(JointSpec& joint, const Series& series, double length_m, double force_n, const RodParameters& p) {
+  if (p.stretch == Stretch::physical)
+    joint.compliance_per_j.head<3>() = series.stretch / (length_m * length_m);
+  else
+    joint.compliance_per_j.head<3>().setConstant(stretch_compliance(length_m, force_n, p));
+  joint.compliance_per_j.tail<3>() = series.bend;
 }
 
 JointSpec crossing_between(int a, int b, double stiffness_nm, double stretch_per_j) {
@@ -120,6 +132,12 @@ double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p) 
   double mass = 0;
   for (const SegmentSpec& s : segments) mass += s.mass();
   return mass * std::max(p.prescribed.largest_gravity_m_s2(p.gravity_m_s2), standard_gravity);
+}
+
+std::string text_of(const Vector3& point) {
+  std::ostringstream out;
+  out << '[' << point.x() << ", " << point.y() << ", " << point.z() << ']';
+  return out.str();
 }
 
 void move_clamp(Scene& scene, int segment, const Vector3& velocity_m_s) {

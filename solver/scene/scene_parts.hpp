@@ -2,9 +2,11 @@
 // which throw SceneError.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "solver/scene/scenes.hpp"
+#include "solver/scene/softness.hpp"
 
 namespace rodsweep {
 
@@ -24,6 +26,12 @@ SegmentSpec held_point(const Vector3& at, const Quaternion& orientation);
 /// the force that an "inextensible" joint has to hold.
 JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p, double force_n);
 
+/// The compliance of an "inextensible" joint [1/J] that has to hold `force_n` and the scene's loads, or the given one.
+double stretch_compliance(double length_m, double force_n, const RodParameters& p);
+
+/// Sets the compliance of a joint of length l whose material is two parts in series. `force_n` as above.
+void set_compliance(JointSpec& joint, const Series& series, double length_m, double force_n, const RodParameters& p);
+
 /// Two segments with one centre, with the given stiffness about every axis [Nm] and compliance of the stretch-shear
 /// rows [1/J].
 JointSpec crossing_between(int a, int b, double stiffness_nm, double stretch_per_j);
@@ -42,6 +50,9 @@ std::vector<SegmentSpec> segments_through(const std::vector<Vector3>& vertices, 
 
 /// Joins each segment to the next. The rest shape is the given one, or straight. `force_n` as above.
 Rod chain(const std::vector<SegmentSpec>& segments, const RodParameters& p, double force_n, bool straight = false);
+
+/// "[x, y, z]", for errors.
+std::string text_of(const Vector3& point);
 
 /// Moves a held segment of the first rod at a velocity, from its position.
 void move_clamp(Scene& scene, int segment, const Vector3& velocity_m_s);

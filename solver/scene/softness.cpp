@@ -16,6 +16,11 @@ Softness cone(double radius_m, double end_radius_m, double length_m, const std::
           integral(&Section::axial_n)};
 }
 
+double mean_radius(double radius_m, double end_radius_m) {
+  const double a = radius_m, b = end_radius_m;
+  return a == b ? a : std::sqrt((a * a + a * b + b * b) / 3);
+}
+
 Softness operator+(const Softness& a, const Softness& b) {
   return {a.length_m + b.length_m, a.bend + b.bend, a.twist + b.twist, a.shear + b.shear, a.axial + b.axial};
 }

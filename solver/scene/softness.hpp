@@ -25,6 +25,9 @@ Softness operator+(const Softness& a, const Softness& b);
 /// Of a cone, from the radii at its ends. `section`: that of a radius.
 Softness cone(double radius_m, double end_radius_m, double length_m, const std::function<Section(double)>& section);
 
+/// The radius of the cylinder of a cone's volume and length.
+double mean_radius(double radius_m, double end_radius_m);
+
 /// Two parts in series, seen from part a, whose axis is z; `rest` turns that to b's.
 struct Series {
   Vector3 stretch, bend;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/scene/softness.hpp"
-
 namespace rodsweep {
 namespace {
 
@@ -61,13 +59,7 @@ std::vector<JointSpec> tree_joints(const Skeleton& skeleton, const std::vector<S
     joint.arm_b_m = Vector3(0, 0, -b.length_m / 2);
     joint.rest = rest;
     joint.frame = series.frame;
-    const double length = (a.length_m + b.length_m) / 2;
-    if (p.stretch == Stretch::physical)
-      joint.compliance_per_j.head<3>() = series.stretch / (length * length);
-    else
-      joint.compliance_per_j.head<3>().setConstant(p.stretch_compliance_per_j.value_or(
-          inextensible_compliance(length, carried[i] + p.prescribed.largest_force_n())));
-    joint.compliance_per_j.tail<3>() = series.bend;
+    set_compliance(joint, series, (a.length_m + b.length_m) / 2, carried[i], p);
   }
   return joints;
 }

@@ -9,12 +9,6 @@
 namespace rodsweep {
 namespace {
 
-/// Of the cylinder of an edge's volume, a cone's.
-double mean_radius(const SkeletonNode& edge) {
-  const double lower = edge.base_radius_m, upper = edge.radius_m;
-  return lower == upper ? lower : std::sqrt((lower * lower + lower * upper + upper * upper) / 3);
-}
-
 /// Segment i is the edge to node i, segment 0 the ground.
 std::vector<SegmentSpec> segments_along(const Skeleton& skeleton, const RodParameters& p, const Vector3& base) {
   std::vector<SegmentSpec> segments(skeleton.size());
@@ -29,7 +23,7 @@ std::vector<SegmentSpec> segments_along(const Skeleton& skeleton, const RodParam
     Quaternion orientation = turn_between(before, edge);
     if (!first) orientation = orientation * below.orientation;
     segments[i] = segment_at(base + parent.position_m + edge / 2, orientation.normalized(), edge.norm(), p);
-    segments[i].radius_m = mean_radius(node);
+    segments[i].radius_m = mean_radius(node.base_radius_m, node.radius_m);
     if (first) segments[0].orientation = segments[1].orientation;
   }
   return segments;

@@ -79,6 +79,28 @@ TEST_CASE("a smooth motion of a clamp is the motion of a tip") {
   CHECK(test::distance(one.scene, other.scene, &Rod::position) < 1e-9);
 }
 
+TEST_CASE("loads stiffen all inextensible joints of a rod alike, those of crossings too") {
+  Lattice lattice = test::lattice_of(Lattice::Cell::cubic, 3);
+  lattice.stretch = Stretch::inextensible;
+  Net net;
+  for (SceneSpec spec : {SceneSpec(lattice), SceneSpec(net)}) {
+    const Scene plain = build_scene(spec);
+    const Rod& before = plain.rods.front();
+    std::size_t free = 0;
+    while (before.segments[free].is_static) ++free;
+    std::visit(
+        [&](auto& scene) {
+          scene.prescribed.loads.push_back({before.position[free], {0, 50, 0}, {0, 0, 0}, {}});
+        },
+        spec);
+    const Scene loaded = build_scene(spec);
+    const double ratio = before.joints[0].compliance[0] / loaded.rods.front().joints[0].compliance[0];
+    CHECK(ratio > 1);
+    for (std::size_t k = 0; k < before.joints.size(); ++k)
+      CHECK(before.joints[k].compliance[0] == Approx(ratio * loaded.rods.front().joints[k].compliance[0]));
+  }
+}
+
 TEST_CASE("points away from rods, loads on clamps and motions of free segments are refused") {
   const auto refused = [](const Prescribed& prescribed) {
     BendingRod rod = test::bending_rod(10);
