@@ -108,3 +108,14 @@ class Scripts(Folder):
         self.assertTrue(error.startswith(f"{name}: "), error)
         self.assertIn(words, error)
         return error
+
+
+class InAFolder(unittest.TestCase):
+    """Each test in an empty folder of its own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+        self.folder = os.getcwd()

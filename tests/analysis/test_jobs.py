@@ -7,7 +7,6 @@ import re
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import types
 import unittest
@@ -19,6 +18,7 @@ import numpy as np
 import rodsweep
 from rodsweep import jobs, program, progress
 from rodsweep.reading import job_paths
+from running import InAFolder
 
 ROOT = Path(synthetic.ANALYSIS).resolve().parent
 ROD = {"type": "bending_rod", "segments": 6, "length_m": rodsweep.uniform(1, 5), "radius_m": 0.05,
@@ -43,14 +43,7 @@ class Bar(io.StringIO):
         return True
 
 
-class InAFolder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
-        self.folder = os.getcwd()
-
+class WithJobs(InAFolder):
     def run_job(self, job, **options):
         results = job.run(**{"progress": False, **options})
         self.addCleanup(results.close)
@@ -66,7 +59,7 @@ class InAFolder(unittest.TestCase):
             job.run(**options)
 
 
-class Runs(InAFolder):
+class Runs(WithJobs):
     def test_a_sweep_is_checked_planned_and_run_with_the_values_of_numpy(self):
         scene = {**ROD, "segments": rodsweep.grid(np.array([6, 9])), "density_kg_m3": np.float64(900),
                  "gravity_m_s2": np.array([0, -9.81, 0])}
@@ -144,7 +137,7 @@ class Runs(InAFolder):
             self.assertEqual(names[name].census().ok, 10)
 
 
-class Messages(InAFolder):
+class Messages(WithJobs):
     def refused(self, call):
         with self.assertRaises(rodsweep.JobError) as caught:
             call()
@@ -209,7 +202,7 @@ class Messages(InAFolder):
             self.assertEqual(program.path(), f"{self.folder}/rodsweep")
 
 
-class Parts(InAFolder):
+class Parts(WithJobs):
     def test_sweeps_are_those_of_the_job_format(self):
         grids = [rodsweep.grid(1, "a"), rodsweep.grid([1, 2]), rodsweep.grid([0, 1], [1, 0]), rodsweep.grid("ab")]
         self.assertEqual([sweep["grid"] for sweep in grids], [[1, "a"], [1, 2], [[0, 1], [1, 0]], ["ab"]])

@@ -4,7 +4,6 @@ import csv
 import json
 import os
 import subprocess
-import tempfile
 import unittest
 
 import synthetic  # noqa: F401  (makes analysis/ importable)
@@ -13,7 +12,7 @@ import numpy as np
 import rodsweep
 import scipy.io
 import scipy.sparse
-from running import run
+from running import InAFolder, run
 
 ROD = {"type": "bending_rod", "segments": 9, "length_m": {"uniform": [1, 2]}, "radius_m": 0.05, "density_kg_m3": 1000,
        "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6}
@@ -45,13 +44,7 @@ def matrix_by_hand(system, held):
     return jacobian * mobility.ravel() @ jacobian.T + np.diag(rod.compliance_per_j.ravel()) / system.dt_s ** 2
 
 
-class Exported(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
-
+class Exported(InAFolder):
     def program(self, *words, code=0):
         done = subprocess.run([os.environ["RODSWEEP"], *words], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, code, done.stderr)

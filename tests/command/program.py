@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 import subprocess
+import tempfile
 import unittest
 
 import h5py
@@ -54,11 +55,15 @@ def changed(path, change, name="small"):
 
 
 class Case(unittest.TestCase):
-    def said(self, *words, code=ALL_DONE, **options):
-        """Runs the program, which must exit with this code; returns its standard output."""
+    def ran(self, *words, code=ALL_DONE, **options):
+        """Runs the program, which must exit with this code; returns the completed process."""
         done = rodsweep(*words, **options)
         self.assertEqual(done.returncode, code, f"{done.stdout}\n{done.stderr}")
-        return done.stdout
+        return done
+
+    def said(self, *words, **options):
+        """The same; returns its standard output."""
+        return self.ran(*words, **options).stdout
 
     def shown(self, *words):
         """The value of the JSON that the program prints."""
@@ -70,3 +75,13 @@ class Case(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (USER_ERROR, ""), done.stderr)
         for text in texts:
             self.assertIn(text, done.stderr)
+
+
+class InAFolder(Case):
+    """Each test in an empty folder of its own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)

@@ -5,24 +5,16 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import h5py
+from program import InAFolder
 
 
-class Plugin(unittest.TestCase):
+class Plugin(InAFolder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
+        super().setUp()
         shutil.copy(os.environ["PLUGIN_EXAMPLE"], "mine.so")
-
-    def program(self, *words, code=0):
-        done = subprocess.run([os.environ["RODSWEEP"], *words], capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
 
     def job(self, *guesses):
         with open("s.json", "w", encoding="utf-8") as file:
@@ -32,7 +24,7 @@ class Plugin(unittest.TestCase):
         return "s.json"
 
     def test_it_saves_what_the_same_guess_of_the_program_saves(self):
-        self.program("run", self.job("previous", {"plugin": {"library": "mine.so"}}), "-o", "s.h5")
+        self.ran("run", self.job("previous", {"plugin": {"library": "mine.so"}}), "-o", "s.h5")
         with h5py.File("s.h5") as file:
             iterations = file["/tasks/iterations_sum"][0]
             self.assertEqual(iterations[2].tolist(), iterations[1].tolist())
@@ -49,13 +41,13 @@ class Plugin(unittest.TestCase):
         shutil.copy(os.path.join(source, "solver", "plugin", "plugin.h"), "include/rodsweep")
         subprocess.run(["cc", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-I", "include", "half.c", "-o", "half.so"],
                        check=True)
-        self.program("run", self.job({"plugin": {"library": "half.so"}}), "-o", "s.h5")
+        self.ran("run", self.job({"plugin": {"library": "half.so"}}), "-o", "s.h5")
         with h5py.File("s.h5") as file:
             iterations = file["/tasks/iterations_sum"][0]
             self.assertLess(iterations[1, 0], iterations[0, 0])
 
     def test_its_error_is_that_of_the_task(self):
-        self.program("run", self.job({"plugin": {"library": "mine.so", "options": "propose"}}), "-o", "s.h5", code=3)
+        self.ran("run", self.job({"plugin": {"library": "mine.so", "options": "propose"}}), "-o", "s.h5", code=3)
         with h5py.File("s.h5") as file:
             self.assertEqual(file["/tasks/outcome"][0].rstrip(b"\0"), b"error")
             self.assertIn(b"plug-in mine.so: no guess in step 0", file["/tasks/message"][0])
@@ -64,15 +56,15 @@ class Plugin(unittest.TestCase):
         with open("text.so", "w", encoding="utf-8") as file:
             file.write("not a library")
         for library, words in (("text.so", "plug-in text.so: cannot be loaded"), ("none.so", "none.so was not found")):
-            error = self.program("validate", self.job({"plugin": {"library": library}}), code=2).stderr
+            error = self.ran("validate", self.job({"plugin": {"library": library}}), code=2).stderr
             self.assertIn("guesses[1].plugin.library: ", error)
             self.assertIn(words, error)
 
     def test_a_sweep_is_not_resumed_with_another_library(self):
-        self.program("run", self.job({"plugin": {"library": "mine.so"}}), "-o", "s.h5")
+        self.ran("run", self.job({"plugin": {"library": "mine.so"}}), "-o", "s.h5")
         with open("mine.so", "ab") as file:
             file.write(b"changed")
-        error = self.program("run", "s.json", "-o", "s.h5", "--resume", code=2).stderr
+        error = self.ran("run", "s.json", "-o", "s.h5", "--resume", code=2).stderr
         self.assertIn("input files of the job have changed", error)
 
 

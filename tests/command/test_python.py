@@ -6,10 +6,10 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import h5py
+from program import InAFolder
 
 ANALYSIS = os.path.join(os.environ["SOURCE_DIR"], "analysis")
 
@@ -35,18 +35,7 @@ def guess(body):
     return f"import numpy as np\nclass Guess:\n    def __init__(self, rods, options): pass\n    {body}\n"
 
 
-class Python(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
-
-    def program(self, *words, code=0):
-        done = subprocess.run([os.environ["RODSWEEP"], *words], capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, code, done.stderr + done.stdout)
-        return done
-
+class Python(InAFolder):
     def write(self, name, text):
         with open(name, "w", encoding="utf-8") as file:
             file.write(text)
@@ -62,10 +51,10 @@ class Python(unittest.TestCase):
         """What the user is told of a guess with this text."""
         self.write("mine.py", text)
         if code == 2:
-            return self.program("validate", self.job({"python": {"file": "mine.py"}}), code=2).stderr
+            return self.ran("validate", self.job({"python": {"file": "mine.py"}}), code=2).stderr
         for left in filter(os.path.exists, ["s.h5"]):
             os.remove(left)
-        self.program("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5", code=3)
+        self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5", code=3)
         with h5py.File("s.h5") as file:
             return file["/tasks/message"][0].decode()
 
@@ -75,7 +64,7 @@ class Python(unittest.TestCase):
     def test_the_mean_of_one_solution_is_the_previous_one(self):
         self.new("guess", "mine.py")
         mean = {"python": {"file": "mine.py", "options": "1"}}
-        self.program("run", self.job("previous", mean, {"python": {"file": "mine.py", "options": "3"}}), "-o", "s.h5", "-n", "2")
+        self.ran("run", self.job("previous", mean, {"python": {"file": "mine.py", "options": "3"}}), "-o", "s.h5", "-n", "2")
         with h5py.File("s.h5") as file:
             iterations = file["/tasks/iterations_sum"][0]
             self.assertEqual(iterations[2].tolist(), iterations[1].tolist())
@@ -84,7 +73,7 @@ class Python(unittest.TestCase):
 
     def test_the_diagonal_takes_the_iterations_of_jacobi(self):
         self.new("preconditioner", "mine.py")
-        self.program("run", self.job("previous", solve={"method": "cg", "preconditioner": {"grid": ["jacobi", "python"]},
+        self.ran("run", self.job("previous", solve={"method": "cg", "preconditioner": {"grid": ["jacobi", "python"]},
                                                         "python_preconditioner": {"file": "mine.py"}}), "-o", "s.h5")
         with h5py.File("s.h5") as file:
             jacobi, own = file["/tasks/iterations_sum"][:]
@@ -94,7 +83,7 @@ class Python(unittest.TestCase):
     def test_the_jobs_of_new_run(self):
         for kind in ("guess", "preconditioner"):
             self.new(kind, f"my_{kind}.py")
-            self.program("validate", f"my_{kind}.json")
+            self.ran("validate", f"my_{kind}.json")
             again = subprocess.run([os.path.join(ANALYSIS, "new.py"), kind, f"my_{kind}.py"], capture_output=True, text=True)
             self.assertEqual(again.returncode, 2)
             self.assertIn(f"my_{kind}.py already exists", again.stderr)
@@ -104,9 +93,9 @@ class Python(unittest.TestCase):
         import numpy as np
         import rodsweep
         self.write("mine.py", KEEPING)
-        self.program("run", self.job({"python": {"file": "mine.py", "options": os.path.abspath("seen.npz")}}), "-o", "s.h5")
+        self.ran("run", self.job({"python": {"file": "mine.py", "options": os.path.abspath("seen.npz")}}), "-o", "s.h5")
         seen = np.load("seen.npz")
-        self.program("systems", "s.h5", "0", "--every", "1", "-o", "all.h5")
+        self.ran("systems", "s.h5", "0", "--every", "1", "-o", "all.h5")
         with rodsweep.systems("all.h5") as systems:
             self.assertGreaterEqual(len(systems), 10)
             self.assertEqual(len(seen.files), 8 * len(systems))
@@ -146,7 +135,7 @@ class Python(unittest.TestCase):
 
     def test_products_are_counted_and_printed_text_is_not_in_the_output(self):
         self.write("mine.py", guess("def propose(self, system):\n        print('hello')\n        return 0 * system.b, 2"))
-        done = self.program("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5")
+        done = self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5")
         self.assertIn("hello", done.stderr)
         self.assertNotIn("hello", done.stdout)
         with h5py.File("s.h5") as file:
@@ -154,10 +143,10 @@ class Python(unittest.TestCase):
 
     def test_a_sweep_is_not_resumed_with_another_file(self):
         self.new("guess", "mine.py")
-        self.program("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5")
+        self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5")
         with open("mine.py", "a", encoding="utf-8") as file:
             file.write("# changed\n")
-        self.assertIn("input files of the job have changed", self.program("run", "s.json", "-o", "s.h5", "--resume", code=2).stderr)
+        self.assertIn("input files of the job have changed", self.ran("run", "s.json", "-o", "s.h5", "--resume", code=2).stderr)
 
     @unittest.skipUnless(os.environ.get("TRAINING"), "takes a minute and needs python3-torch")
     def test_the_network_of_the_page_saves_iterations(self):
