@@ -22,12 +22,14 @@ line. A text in @<<...>> replaces the visible text there, and is not shown:
     | bending rods@<<Bending rod>> | .00 **.00** |
     {% endfilter %}
 
-{{ score("10 %", "1 %") }} is the table of score.txt at these errors.
+{{ score("10 %", "1 %") }} is the table of score.txt at these errors. {{ cheapest("net_gusts", {"8 × 8": "Net, scene.rows
+= 8:"}) }} is one of the fastest combinations, with a row for each of these blocks. {{ origins() }} says what made the tables.
 
 The numbers in the cells are styles. A cell has one number per column in its address, each with or without its
 interval, [.00, .00]. Text in `backticks` and columns called `-` do not change. In tables, a | in an address is \\|.
 """
 
+import itertools
 import os
 import re
 import sys
@@ -89,14 +91,14 @@ class Tables:
                  "CG, Jacobi": "Jacobi, any guess", "Gauss-Seidel": "Gauss–Seidel"}
         lines = self._lines("score")
         scenes = dict.fromkeys(found.group(1) for found in map(re.compile(r"(.+), error \S+ %").match, lines) if found)
-        rows = [["scene", "error", *kinds.values()], ["---"] * (2 + len(kinds))]
+        rows = [["scene", "error", *kinds.values()]]
         for scene in scenes:
             for level in levels:
                 block = f"{scene}, error {level}"
                 times = [self._score_cell(lines, block, kind) for kind in kinds]
                 least = min((seconds for seconds, kept in times if kept), default=None)
                 rows.append([scene, level, *(self._score_text(seconds, kept, seconds == least) for seconds, kept in times)])
-        return "\n".join(f"| {' | '.join(row)} |" for row in rows) + "\n"
+        return _markdown(rows)
 
     @staticmethod
     def _score_cell(lines, block, kind):
@@ -112,6 +114,33 @@ class Tables:
             return "–"
         text = f"{seconds.normalize():f}"
         return f"**{text}**" if least and kept else text if kept else f"({text})"
+
+    def cheapest(self, name, blocks):
+        """A Markdown table of the fastest combinations of each kind in a table of combinations: times in µs."""
+        lines = self._lines(name)
+        kinds = ("direct", "from zero", "classical guess", "learned guess")
+        factors = [(kinds[2], "over from zero"), (kinds[3], "over from zero"), (kinds[3], "over classical guess")]
+        rows = [["", "joints", *kinds, "classical over zero", "learned over zero", "learned over classical"]]
+        for text, block in blocks.items():
+            try:
+                inside = lines[_first(lines, 0, block, f"block {block!r}"):]
+            except NotFound as missing:
+                raise NotFound(f"{name}.txt has no {missing}") from None
+            joints = re.search(r": (\d+) joints", inside[0]).group(1)
+            found = itertools.takewhile(str.strip, inside[_first(inside, 0, "the cheapest", f"cheapest in {name}.txt") + 1:])
+            settings = {cells[0].group(): cells[1].group() for cells in map(_cells, found)}
+            times = {kind: find_cell(inside, "*", "the cheapest", kind, "µs") for kind in kinds}
+            rows.append([text, f"{int(joints):,}", *(f"{times[kind].partition(' ')[0]}{_ways(settings[kind])}" for kind in kinds),
+                         *(find_cell(inside, "*", "the cheapest", kind, over) for kind, over in factors)])
+        return _markdown(rows)
+
+    def origins(self):
+        """A Markdown table: the revision, day and processor that made each table."""
+        rows = [["study", "revision", "day", "minutes", "processor", "failed of tasks", "disturbed"]]
+        for row in origins.read(os.path.join(self.folder, "origins.txt")).values():
+            rows.append([row["study"], row["revision"], row["day"], row["minutes"], row["processor"],
+                         f"{row['failed']} of {row['tasks']}", row["disturbed"]])
+        return _markdown(rows)
 
     def table(self, text, address):
         """A Markdown table with the numbers of its address."""
@@ -165,6 +194,18 @@ def find_cell(lines, section, block, row, column):
     raise NotFound(f"row {row!r}")
 
 
+def _markdown(rows):
+    return "\n".join(f"| {' | '.join(row)} |" for row in (rows[0], ["---"] * len(rows[0]), *rows[1:]))
+
+
+def _ways(setting):
+    """"block icc lag 5 from copingnet lattices" as " `block_icc` lag 5, `lattices`"; the direct solve needs no words."""
+    preconditioner, _, guess = setting.partition(" from ")
+    name, settings = re.fullmatch(r"(.+?)((?: (?:levels|lag) \d+)*)", preconditioner).groups()
+    start = "" if guess == "zero" else f", `{guess.removeprefix('copingnet ')}`"
+    return f" `{name.replace(' ', '_')}`{settings}{start}" if guess else ""
+
+
 def _cells(line):
     return list(re.finditer(r"\S+(?: \S+)*", line))
 
@@ -202,7 +243,8 @@ def rendered(template, folder=TABLES):
     environment = jinja2.Environment(keep_trailing_newline=True, trim_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters["table"] = tables.table
     with open(template, encoding="utf-8") as file:
-        return environment.from_string(file.read()).render(cell=tables.cell, score=tables.score)
+        return environment.from_string(file.read()).render(
+            cell=tables.cell, score=tables.score, cheapest=tables.cheapest, origins=tables.origins)
 
 
 def templates(root=ROOT):
