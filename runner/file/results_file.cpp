@@ -256,7 +256,7 @@ ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Pr
   });
   runs = broadcast(runs, comm);
   const std::vector<std::uint8_t> none(static_cast<std::size_t>(plan.size()), 0);
-  return ResultsFile(path, plan, none, runs, none, provenance, comm, std::move(lock));
+  return ResultsFile(path, plan, none, runs, none, provenance, comm, std::move(lock), true);
 }
 
 std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance,
@@ -283,8 +283,10 @@ std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan&
     if (is_again) point.done[i] = 0;
     if (is_again || retry == Retry::failed) point.tries[i] = 0;
   }
+  const bool is_verified = verified->left_out == 0;  // if not, the row makes the next run begin at another task
+  const bool is_complete = std::find(point.done.begin(), point.done.end(), 0) == point.done.end();
   ResultsFile file(path, plan, std::move(point.done), point.runs, std::move(point.tries), provenance, comm,
-                   std::move(lock));
+                   std::move(lock), !is_verified || !is_complete);
   file.take_back(verified->again, comm);
   if (verified->left_out > 0)
     file.add_note(fmt::format("{}: time was left to verify {} of {} finished tasks; later runs verify others",
@@ -293,12 +295,14 @@ std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan&
 }
 
 ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
-                         std::vector<std::uint8_t> tries, const Provenance& provenance, MPI_Comm comm, FileLock lock)
+                         std::vector<std::uint8_t> tries, const Provenance& provenance, MPI_Comm comm, FileLock lock,
+                         bool has_row)
     : open_(std::make_unique<Open>()),
       done_(std::move(done)),
       tries_(std::move(tries)),
+      has_row_(has_row),
       run_index_(std::min(runs, run_rows - 1)) {
-  if (runs >= run_rows) {
+  if (has_row_ && runs >= run_rows) {
     note_ = fmt::format("{} already has {} rows in /runs, the maximum: this run overwrites the last one", path.native(),
                         run_rows);
   }
@@ -330,7 +334,11 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
              " is on a file system without locks: a second run is detected only by the time of the file");
   open_->run.provenance = provenance;
   open_->run.provenance.host = host_names(comm);
-  on_first_rank(comm, [&] { write_run(open_->file, static_cast<std::size_t>(run_index_), open_->run); });
+  on_first_rank(comm, [&] { write_run_row(); });
+}
+
+void ResultsFile::write_run_row() {
+  if (has_row_) write_run(open_->file, static_cast<std::size_t>(run_index_), open_->run);
 }
 
 /// Marks the tasks to run again as pending in the file, before anything is overwritten.
@@ -429,7 +437,7 @@ void ResultsFile::beat() { open_->synced.beat(); }
 void ResultsFile::end_run(const std::string& end_utc, int exit_code) {
   open_->run.end_utc = end_utc;
   open_->run.exit_code = exit_code;
-  write_run(open_->file, static_cast<std::size_t>(run_index_), open_->run);
+  write_run_row();
 }
 
 void ResultsFile::close() {

@@ -48,7 +48,9 @@ class ResultsFile {
   /// Collective. Throws FileError for a file of another program, schema version, plan or job text, or one that another
   /// run is writing. All ranks verify the checksums, with a heartbeat, each until `verifying` says Verify::enough.
   /// Damaged tasks become pending again; with Retry::failed also failed ones that may end differently (may_change()).
-  /// Appends a row to /runs. Returns none on all ranks, and leaves the file unchanged, after Verify::stop on any rank.
+  /// Appends a row to /runs, unless all tasks are complete and verified: then the file keeps its bytes, since jobs that
+  /// read it as a data set know it by its hash. Returns none on all ranks, and leaves the file unchanged, after
+  /// Verify::stop on any rank.
   static std::optional<ResultsFile> resume(
       const std::filesystem::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
       Retry retry = Retry::none, const std::function<Verify()>& verifying = [] { return Verify::on; });
@@ -63,7 +65,7 @@ class ResultsFile {
   const std::vector<std::uint8_t>& done() const { return done_; }
   /// Per task, the number of tries in earlier runs whose worker crashed.
   const std::vector<std::uint8_t>& tries() const { return tries_; }
-  int run_index() const { return run_index_; }  ///< this run's row of /runs
+  int run_index() const { return run_index_; }  ///< this run's row of /runs; of a complete file, one without content
   /// A warning for the user about this file; may be empty.
   const std::string& note() const { return note_; }
 
@@ -101,14 +103,17 @@ class ResultsFile {
  private:
   struct Open;
   ResultsFile(const std::filesystem::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
-              std::vector<std::uint8_t> tries, const Provenance& provenance, MPI_Comm comm, FileLock lock);
+              std::vector<std::uint8_t> tries, const Provenance& provenance, MPI_Comm comm, FileLock lock,
+              bool has_row);
 
   void add_note(const std::string& text);
+  void write_run_row();
   void take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm);
 
   std::unique_ptr<Open> open_;
   std::vector<std::uint8_t> done_, tries_;
   std::map<std::int64_t, std::uint8_t> before_;  ///< earlier tries of the tasks that this rank runs
+  bool has_row_ = true;                          ///< whether /runs gets a row of this run
   int run_index_ = 0;
   std::string note_;
   std::filesystem::path path_;  ///< after the end

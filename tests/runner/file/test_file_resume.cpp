@@ -91,6 +91,21 @@ TEST_CASE("a complete task is never written again") {
   CHECK(untouched);
 }
 
+TEST_CASE("resuming a complete file changes none of its bytes, so jobs that read it still know it") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  make_file(folder / "a.h5", plan, plan.size());
+  const std::string before = bytes_of(folder / "a.h5");
+  {
+    ResultsFile file = resume(folder / "a.h5", plan);
+    file.beat();
+    file.end_run("2025-01-01T00:00:00Z", 0);
+    file.close();
+  }
+  const bool untouched = bytes_of(folder / "a.h5") == before;
+  CHECK(untouched);
+}
+
 TEST_CASE("a sweep can be resumed more often than /runs has rows, and says so") {
   const FullFile made(0);
   hdf5::write_texts(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/begin",
