@@ -5,9 +5,10 @@
     analysis/results/origins.py            names the tables that are older than their job or models; exit code 1 if any is
 
 A row has the study's name, the revision of the program, the day of its first run, its minutes, instructions and
-processor, its tasks and how many of them failed, the share of solves that were left out of times because something
-interrupted them, and checksums of the job and its models. The job's checksum ignores name and description. A table is
-older than its job or models if they have other checksums now; docs/tools/pages.py quotes no number of such a table.
+processor, its tasks and how many of them failed, the share of the time of solves that interruptions took (interrupted
+solves are left out of times), and checksums of the job and its models. The job's checksum ignores name and description.
+A table is older than its job or models if they have other checksums now; docs/tools/pages.py quotes no number of such a
+table.
 """
 
 import hashlib
@@ -106,8 +107,8 @@ def disturbed(file):
     if not len(sims):
         return "-"
     part = timings.times(file, sims)["all"]
-    solves, interrupted = part.solves.sum(), part.interrupted.sum()
-    return f"{100 * interrupted / solves:.1f} %" if solves else "-"
+    lost, spent = part.lost_s.sum(), part.spent_s.sum()
+    return f"{100 * lost / spent:.1f} %" if spent else "-"
 
 
 def write(rows):

@@ -9,7 +9,9 @@ step are Newton iterations, plus one for prediction and velocities. The median i
 same Newton iteration. A guess may differ between them (nearest data at the first, no history at a late one).
 If they are fewer than FEW, the median of an earlier iteration or of all rows is used. Two kinds of parts are only
 compared among themselves, and only if there are FEW: CG without an iteration, and parts that renewed a lagged
-preconditioner or factor (/solves/renewed). Times.interrupted counts the rows left out; above a share of SUSPICIOUS,
+preconditioner or factor (/solves/renewed). Interruptions strike all parts: one that is long BY_DESIGN times as often as
+the median part is not interrupted but slow by design, such as searches of nearest neighbours, and counts as it is.
+Times.interrupted counts the rows left out. If they are at least FEW and interruptions took over SUSPICIOUS of the time,
 interruptions() warns.
 """
 
@@ -27,6 +29,7 @@ INTERRUPTED = 5
 FLOOR_S = 5e-6
 FIXED = 4
 FEW = 5
+BY_DESIGN = 10
 SUSPICIOUS = 0.05
 
 
@@ -39,6 +42,8 @@ class Times:
     """
     solves: np.ndarray
     interrupted: np.ndarray
+    lost_s: np.ndarray    # what interruptions took
+    spent_s: np.ndarray   # all parts of all guesses, with interruptions
     assemble_s: np.ndarray
     guess_s: np.ndarray
     cg_s: np.ndarray
@@ -62,7 +67,7 @@ def measured(by_newton):
 def times(file, sims):
     """{"first": Times, "all": Times} from one pass over the rows."""
     tasks, guesses, zero = sims.tasks(), len(file.guesses), file.zero
-    names = ("solves", "kept", "assemble_s", "guess_s", "cg_s", "direct_s", "direct_kept", "zero_guess_s", "zero_cg_s")
+    names = ("solves", "kept", "lost_s", "spent_s", "assemble_s", "guess_s", "cg_s", "direct_s", "direct_kept", "zero_guess_s", "zero_cg_s")
     sums = {which: {name: np.zeros((file.task_count, guesses)) for name in names} for which in ("first", "later")}
     rung = timed_rung(file)
     optional = (RENEWED,) if file.has(RENEWED) else ()
@@ -83,11 +88,13 @@ def times(file, sims):
         apart[:, -guesses:] = iterations == 0
         if optional:
             apart[:, -2 * guesses:] += 2 * np.tile(rows[RENEWED] == 1, 2).astype(np.int8)
-        smooth = ~_interrupted(starts, parts, work, rows["/solves/newton"], apart)[:, None]
+        lost = _lost_s(starts, parts, work, rows["/solves/newton"], apart)[:, None]
+        spent, smooth = np.nansum(parts, axis=1)[:, None], lost == 0
         for which, counted in (("first", valid & first), ("later", valid & ~first)):
             kept = counted & smooth
             with_direct = kept & np.isfinite(direct)
-            parts = {"solves": counted, "kept": kept, "assemble_s": np.where(kept, assemble, 0),
+            parts = {"solves": counted, "kept": kept, "lost_s": np.where(counted, lost, 0),
+                     "spent_s": np.where(counted, spent, 0), "assemble_s": np.where(kept, assemble, 0),
                      "guess_s": np.where(kept, guess, 0), "cg_s": np.where(kept, cg, 0),
                      "direct_s": np.where(with_direct, direct, 0), "direct_kept": with_direct}
             if zero is not None:
@@ -111,10 +118,10 @@ def timed_rung(file):
     return np.argmin(np.abs(np.log(parameter.values[:, None] / file.tolerances[None, :])), axis=1)
 
 
-def _interrupted(starts, parts, work, kind=None, apart=None):
-    """Mask of the rows in which a part took far longer than its median per work over the task's rows of that kind.
-    Parts with the same number above 0 in `apart` are only compared with each other."""
-    found = np.zeros(len(parts), dtype=bool)
+def _lost_s(starts, parts, work, kind=None, apart=None):
+    """What each row took longer in parts that took far longer than their median per work over the task's rows of that
+    kind, and do not do so by design; 0 without an interruption. Parts with the same number above 0 in `apart` are only compared with each other."""
+    lost = np.zeros(parts.shape)
     kind = np.zeros(len(parts)) if kind is None else kind
     apart = np.zeros(parts.shape, dtype=np.int8) if apart is None else apart
     none = np.full(parts.shape[1], np.nan)
@@ -131,8 +138,10 @@ def _interrupted(starts, parts, work, kind=None, apart=None):
                 usual[rows] = np.where(numbers[rows] == number, medians, usual[rows])
         expected = usual * work[begin:end]
         long = (parts[begin:end] > INTERRUPTED * expected) & (parts[begin:end] > expected + FLOOR_S)
-        found[begin:end] = long.any(axis=1)
-    return found
+        lost[begin:end] = np.where(long, parts[begin:end] - expected, 0)
+    often = np.count_nonzero(lost, axis=0)
+    by_design = often > BY_DESIGN * max(1, np.median(often))
+    return np.where(by_design, 0, lost).sum(axis=1)
 
 
 def _medians(rates, otherwise, fewest=1):
@@ -148,7 +157,7 @@ def _scale(sums):
     """Scales sums over the kept rows to all rows; direct_s is NaN unless all kept rows have it."""
     none = np.where(sums["solves"] > 0, np.nan, 1.0)
     scale = np.divide(sums["solves"], sums["kept"], out=none, where=sums["kept"] > 0)
-    for name in sums.keys() - {"solves", "kept", "direct_kept"}:
+    for name in sums.keys() - {"solves", "kept", "lost_s", "spent_s", "direct_kept"}:
         sums[name] *= scale
     sums["direct_s"][sums["direct_kept"] != sums["kept"]] = np.nan
     return sums
@@ -169,7 +178,8 @@ def _gathered(sims, zero, sums, rest):
         zero_guess = np.where(own, of("guess_s", zero), of("zero_guess_s"))
         zero_cg = np.where(own, of("cg_s", zero), of("zero_cg_s"))
         zero_rest = np.where(own, sims.gather(rest, zero), sims.gather(rest))
-    return Times(solves, solves - sims.gather(sums["kept"]), of("assemble_s"), of("guess_s"), of("cg_s"),
+    lost, spent = sims.gather(sums["lost_s"]), sims.gather(sums["spent_s"])
+    return Times(solves, solves - sims.gather(sums["kept"]), lost, spent, of("assemble_s"), of("guess_s"), of("cg_s"),
                  of("direct_s"), sims.gather(rest), zero_assemble, zero_guess, zero_cg, zero_rest)
 
 
@@ -181,7 +191,7 @@ def _rest_s(file, tasks):
             rest = rows["/timing/steps/rest_s"].astype(float)
             there = np.isfinite(rest)
             iterations = rows["/steps/newton_iterations"][:, None] + 1.0
-            smooth = there & ~_interrupted(starts, rest[:, None], iterations)
+            smooth = there & (_lost_s(starts, rest[:, None], iterations) == 0)
             for sums, values in ((total, np.where(smooth, rest, 0)), (kept, smooth), (taken, there)):
                 np.add.at(sums, owners, np.add.reduceat(values.astype(float), starts))
     return np.divide(total * taken, kept, out=np.full(file.task_count, np.nan), where=kept > 0)
@@ -230,7 +240,7 @@ def _direct_means(file, tasks):
         for owners, starts, rows in file.solve_blocks(tasks, paths):
             both = np.stack([rows[path].astype(float) for path in paths], axis=1)
             there = np.isfinite(both).all(axis=1)
-            smooth = there & ~_interrupted(starts, both, np.ones(both.shape))
+            smooth = there & (_lost_s(starts, both, np.ones(both.shape)) == 0)
             for part, values in zip(sums, both.T):
                 np.add.at(part, owners, np.add.reduceat(np.where(smooth, values, 0), starts))
             for part, counted in ((kept, smooth), (solves, there)):
@@ -240,13 +250,14 @@ def _direct_means(file, tasks):
 
 def interruptions(part, sims):
     """A sentence on the rows that a Times leaves out; empty if there are none."""
-    solves, left_out = (np.where(sims.own, np.nansum(count, axis=1), np.nan_to_num(count).max(axis=1, initial=0)).sum()
-                        for count in (part.solves, part.interrupted))
+    solves, left_out, lost, spent = (
+        np.where(sims.own, np.nansum(value, axis=1), np.nan_to_num(value).max(axis=1, initial=0)).sum()
+        for value in (part.solves, part.interrupted, part.lost_s, part.spent_s))
     if not left_out:
         return ""
     found = (f"Left out: {left_out:.0f} of {solves:.0f} solves that the operating system interrupted "
              f"(a part lasted over {INTERRUPTED} times its median).")
-    if left_out <= SUSPICIOUS * solves:
+    if left_out < FEW or lost <= SUSPICIOUS * spent:
         return found
-    return (f"{found} That is {left_out / solves:.0%} of them: these times are not to be trusted. The machine was busy "
-            "with other work, or some solves are slow by design.")
+    return (f"{found} Interruptions took {lost / spent:.0%} of the time: these times are not to be trusted. The machine "
+            "was busy with other work, or some solves are slow by design.")
