@@ -107,8 +107,8 @@ def disturbed(file):
     if not len(sims):
         return "-"
     part = timings.times(file, sims)["all"]
-    lost, spent = part.lost_s.sum(), part.spent_s.sum()
-    return f"{100 * lost / spent:.1f} %" if spent else "-"
+    lost_s, kept_s = part.lost_s.sum(), part.kept_s.sum()
+    return f"{100 * lost_s / (lost_s + kept_s):.1f} %" if kept_s else "-"
 
 
 def write(rows):

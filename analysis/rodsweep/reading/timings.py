@@ -12,7 +12,7 @@ compared among themselves, and only if there are FEW: CG without an iteration, a
 preconditioner or factor (/solves/renewed). Interruptions strike all parts: one that is long BY_DESIGN times as often as
 the median part is not interrupted but slow by design, such as searches of nearest neighbours, and counts as it is.
 Times.interrupted counts the rows left out. If they are at least FEW and interruptions took over SUSPICIOUS of the time,
-interruptions() warns.
+interruptions() warns; each counts LONGEST_S at most, since a program that is suspended is no busy machine.
 """
 
 from dataclasses import dataclass
@@ -27,6 +27,7 @@ RENEWED = "/solves/renewed"
 SPEEDUPS = {"cg": "CG only", "guess_cg": "guess + CG", "step": "whole step"}
 INTERRUPTED = 5
 FLOOR_S = 5e-6
+LONGEST_S = 10e-3
 FIXED = 4
 FEW = 5
 BY_DESIGN = 10
@@ -42,8 +43,8 @@ class Times:
     """
     solves: np.ndarray
     interrupted: np.ndarray
-    lost_s: np.ndarray    # what interruptions took
-    spent_s: np.ndarray   # all parts of all guesses, with interruptions
+    lost_s: np.ndarray  # what interruptions took, and what all parts of the other rows took
+    kept_s: np.ndarray
     assemble_s: np.ndarray
     guess_s: np.ndarray
     cg_s: np.ndarray
@@ -67,7 +68,8 @@ def measured(by_newton):
 def times(file, sims):
     """{"first": Times, "all": Times} from one pass over the rows."""
     tasks, guesses, zero = sims.tasks(), len(file.guesses), file.zero
-    names = ("solves", "kept", "lost_s", "spent_s", "assemble_s", "guess_s", "cg_s", "direct_s", "direct_kept", "zero_guess_s", "zero_cg_s")
+    names = ("solves", "kept", "lost_s", "kept_s", "assemble_s", "guess_s", "cg_s", "direct_s", "direct_kept",
+             "zero_guess_s", "zero_cg_s")
     sums = {which: {name: np.zeros((file.task_count, guesses)) for name in names} for which in ("first", "later")}
     rung = timed_rung(file)
     optional = (RENEWED,) if file.has(RENEWED) else ()
@@ -89,12 +91,12 @@ def times(file, sims):
         if optional:
             apart[:, -2 * guesses:] += 2 * np.tile(rows[RENEWED] == 1, 2).astype(np.int8)
         lost = _lost_s(starts, parts, work, rows["/solves/newton"], apart)[:, None]
-        spent, smooth = np.nansum(parts, axis=1)[:, None], lost == 0
+        all_s, smooth = np.nansum(parts, axis=1)[:, None], lost == 0
         for which, counted in (("first", valid & first), ("later", valid & ~first)):
             kept = counted & smooth
             with_direct = kept & np.isfinite(direct)
             parts = {"solves": counted, "kept": kept, "lost_s": np.where(counted, lost, 0),
-                     "spent_s": np.where(counted, spent, 0), "assemble_s": np.where(kept, assemble, 0),
+                     "kept_s": np.where(kept, all_s, 0), "assemble_s": np.where(kept, assemble, 0),
                      "guess_s": np.where(kept, guess, 0), "cg_s": np.where(kept, cg, 0),
                      "direct_s": np.where(with_direct, direct, 0), "direct_kept": with_direct}
             if zero is not None:
@@ -138,7 +140,7 @@ def _lost_s(starts, parts, work, kind=None, apart=None):
                 usual[rows] = np.where(numbers[rows] == number, medians, usual[rows])
         expected = usual * work[begin:end]
         long = (parts[begin:end] > INTERRUPTED * expected) & (parts[begin:end] > expected + FLOOR_S)
-        lost[begin:end] = np.where(long, parts[begin:end] - expected, 0)
+        lost[begin:end] = np.where(long, np.minimum(parts[begin:end] - expected, LONGEST_S), 0)
     often = np.count_nonzero(lost, axis=0)
     by_design = often > BY_DESIGN * max(1, np.median(often))
     return np.where(by_design, 0, lost).sum(axis=1)
@@ -157,7 +159,7 @@ def _scale(sums):
     """Scales sums over the kept rows to all rows; direct_s is NaN unless all kept rows have it."""
     none = np.where(sums["solves"] > 0, np.nan, 1.0)
     scale = np.divide(sums["solves"], sums["kept"], out=none, where=sums["kept"] > 0)
-    for name in sums.keys() - {"solves", "kept", "lost_s", "spent_s", "direct_kept"}:
+    for name in sums.keys() - {"solves", "kept", "lost_s", "kept_s", "direct_kept"}:
         sums[name] *= scale
     sums["direct_s"][sums["direct_kept"] != sums["kept"]] = np.nan
     return sums
@@ -178,8 +180,8 @@ def _gathered(sims, zero, sums, rest):
         zero_guess = np.where(own, of("guess_s", zero), of("zero_guess_s"))
         zero_cg = np.where(own, of("cg_s", zero), of("zero_cg_s"))
         zero_rest = np.where(own, sims.gather(rest, zero), sims.gather(rest))
-    lost, spent = sims.gather(sums["lost_s"]), sims.gather(sums["spent_s"])
-    return Times(solves, solves - sims.gather(sums["kept"]), lost, spent, of("assemble_s"), of("guess_s"), of("cg_s"),
+    lost_s, kept_s = sims.gather(sums["lost_s"]), sims.gather(sums["kept_s"])
+    return Times(solves, solves - sims.gather(sums["kept"]), lost_s, kept_s, of("assemble_s"), of("guess_s"), of("cg_s"),
                  of("direct_s"), sims.gather(rest), zero_assemble, zero_guess, zero_cg, zero_rest)
 
 
@@ -250,14 +252,15 @@ def _direct_means(file, tasks):
 
 def interruptions(part, sims):
     """A sentence on the rows that a Times leaves out; empty if there are none."""
-    solves, left_out, lost, spent = (
+    solves, left_out, lost_s, kept_s = (
         np.where(sims.own, np.nansum(value, axis=1), np.nan_to_num(value).max(axis=1, initial=0)).sum()
-        for value in (part.solves, part.interrupted, part.lost_s, part.spent_s))
+        for value in (part.solves, part.interrupted, part.lost_s, part.kept_s))
     if not left_out:
         return ""
     found = (f"Left out: {left_out:.0f} of {solves:.0f} solves that the operating system interrupted "
              f"(a part lasted over {INTERRUPTED} times its median).")
-    if left_out < FEW or lost <= SUSPICIOUS * spent:
+    share = lost_s / (lost_s + kept_s)
+    if left_out < FEW or share <= SUSPICIOUS:
         return found
-    return (f"{found} Interruptions took {lost / spent:.0%} of the time: these times are not to be trusted. The machine "
+    return (f"{found} Interruptions took {share:.0%} of the time: these times are not to be trusted. The machine "
             "was busy with other work, or some solves are slow by design.")
