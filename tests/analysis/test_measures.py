@@ -244,7 +244,7 @@ class Interruptions(Changes):
 
         self.assertEqual(self.times(change, steps=20)[1]["all"].interrupted[0, 0], 1)
 
-    def test_more_than_a_twentieth_of_the_time_lost_is_said_to_be_too_much(self):
+    def test_more_than_a_tenth_of_the_time_lost_is_said_to_be_too_much(self):
         def interrupt(h5):
             for guess in range(4):
                 h5["timing/solves/cg_s"][15 * guess::60, guess] = 4e-3

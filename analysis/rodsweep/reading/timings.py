@@ -31,7 +31,7 @@ LONGEST_S = 10e-3
 FIXED = 4
 FEW = 5
 BY_DESIGN = 10
-SUSPICIOUS = 0.05
+SUSPICIOUS = 0.1
 
 
 @dataclass(frozen=True)
