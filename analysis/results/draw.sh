@@ -43,9 +43,10 @@ if [ "${2:-}" = ablation ]; then
   exit
 fi
 jacobi="--select solve.preconditioner=jacobi"
-for study in spatial_bending spatial_helix; do
-  figures spatial $study $jacobi
-  table summary $study
+for scene in bending helix; do  # all in the table, those that a figure can tell apart in it
+  figures spatial spatial_$scene $jacobi --guess "zero,quadratic,regression 6,subspace 10,deflation 10,copingnet rods 5 lag 8 to 0.01,\
+copingnet rods-large,first copingnet $scene-paper,first copingnet $scene-paper-best,knn 3"
+  table summary spatial_$scene
 done
 pretrained=network/pretrained
 /usr/bin/python3 analysis/loss.py $pretrained/{rods,rods-large,bending-paper,bending-paper-best,helix-paper,helix-paper-best}.h5 \
@@ -63,16 +64,16 @@ table summary learned_rods
 for scene in bending_rod helix; do figures front learned_rods --scene $scene --tolerance 1e-2,1e-3,1e-4; done
 { echo; script summary learned_rods --newton all; echo; script summary learned_rods --scene ring --by scene.clamp; } >>"$out/learned_rods.txt"
 table summary learned_rods_length --by scene.segments
-figures spatial learned_rods_length && rm $out/learned_rods_length-{speedup,time}.png
+figures spatial learned_rods_length && rm $out/learned_rods_length-{speedup,time,four-curves}.png
 table summary learned_rods_closed --by scene.segments --newton all
 for by in stiffness:scene.youngs_modulus_pa length:scene.length_m step:time.step_s; do
   study=generalisation_${by%%:*}
   figures spatial "$study" --x "${by#*:}"
   table summary "$study" --by "${by#*:}"
 done
-figures spatial tree_wind --x scene.depth $jacobi
+figures spatial tree_wind --x scene.depth $jacobi && rm $out/tree_wind-{speedup,time,four-curves}-by-depth.png
 table summary tree_wind --by scene.depth
-figures spatial knot --x scene.contact $jacobi
+figures spatial knot --x scene.contact $jacobi && rm $out/knot-{time,four-curves}-by-contact.png
 for study in collision_falling knot; do table summary $study --by scene.contact.friction; done
 figures integrators integrators --energy-step 0.01 >$out/integrators.txt
 figures balance balance >"$out/balance.txt"

@@ -44,6 +44,7 @@ import origins  # noqa: E402
 NUMBER = re.compile(r"[−-]?(?:\d[\d,]*\.?\d*|\.\d+)(?:e[+−-]?\d+)?")
 NAMED = re.compile(r"@<<(.*?)>>")
 BAR = re.compile(r"(?<!\\)\|")
+DISTRUSTED = "not to be trusted"    # in a line below times of which too many were interrupted
 WITH_INTERVAL = re.compile(rf"({NUMBER.pattern})[*_]*(?:\s*\[({NUMBER.pattern}), ({NUMBER.pattern})\])?")
 
 
@@ -171,7 +172,8 @@ class Tables:
 
 
 def find_cell(lines, section, block, row, column):
-    """The text of a cell. Columns are right-aligned: a header's cell ends where the row's does."""
+    """The text of a cell. Columns are right-aligned: a header's cell ends where the row's does. Times of a block that says
+    "not to be trusted" are not found."""
     start = _first(lines, 0, section, f"section {section!r}") if section != "*" else 0
     start = _first(lines, start, block, f"block {block!r}")
     above = start    # blocks may share a header above them
@@ -190,6 +192,8 @@ def find_cell(lines, section, block, row, column):
         if first.group() == row:
             found = [cell.group() for cell in others if cell.end() == ends[0]]
             if found:
+                if any(DISTRUSTED in line for line in itertools.takewhile(str.strip, lines[max(start, header) + 1:])):
+                    raise NotFound(f"times to be trusted in block {block!r}")
                 return found[0]
     raise NotFound(f"row {row!r}")
 

@@ -42,7 +42,8 @@ constexpr const char* main_help =
     "'rodsweep COMMAND --help' shows the help of a command.\n\n"
     "The scripts in analysis/ are commands too: rodsweep NAME starts rodsweep-NAME. They need Python.\n"
     "  query    tasks as a table            compare  two sweeps            summary  the main numbers\n"
-    "  report   an HTML page                spatial  figures               export   CSV of all rows";
+    "  report   an HTML page                spatial  figures               export   CSV of all rows\n"
+    "  new      a guess of your own         score    that guess against all others";
 
 constexpr const char* schema_help =
     "Editors use the schema for completion and checks; `rodsweep validate` checks more. Put the file into the\n"

@@ -101,6 +101,14 @@ class Pages(unittest.TestCase):
             else:
                 self.assertIn(".10", self.page(quote))
 
+    def test_times_of_a_disturbed_block_are_not_quoted(self):
+        disturbed = "  Left out: 9 of 99 solves. These times are not to be trusted.\n"
+        self.write("busy.txt", TABLE.replace("     1,234\n", "     1,234\n" + disturbed))
+        time = '{{ cell("busy; Time per solve; Bending rod; last 9; solve µs", "0") }}'
+        self.assertIn("times to be trusted", self.refused(time))
+        self.assertEqual(self.page(time.replace("busy", "x")), "1234")
+        self.assertEqual(self.page('{{ cell("busy; CG ratio; Bending rod; last 9; 1e-2", ".00") }}'), ".10")
+
     def test_numbers_have_the_style_that_is_asked_for(self):
         for address, style, text in (("CG ratio; Bending rod; last 9; 1e-2", ".00", ".10"),
                                      ("CG ratio; Bending rod; last 9; 1e-2", "0.0", "0.1"),
