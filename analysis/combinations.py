@@ -21,7 +21,7 @@ EXAMPLES = """examples:
   analysis/combinations.py results/lattice_swing.h5
   analysis/combinations.py results/net_gusts.h5 --x scene.rows --newton all"""
 STYLES = {combinations.DIRECT: style.DIRECT,
-          combinations.ZERO: style.GuessStyle(*style.KINDS["zero"]),
+          combinations.ZERO: style.GuessStyle(style.KINDS["zero"][0], "s", style.KINDS["zero"][2]),  # may be one point
           combinations.CLASSICAL: style.GuessStyle(*style.KINDS["regression"]),
           combinations.LEARNED: style.GuessStyle(*style.KINDS["copingnet"]),
           combinations.OWN: style.GuessStyle(*style.SPARE[0]),
