@@ -122,7 +122,8 @@ def timed_rung(file):
 
 def _lost_s(starts, parts, work, kind=None, apart=None):
     """What each row took longer in parts that took far longer than their median per work over the task's rows of that
-    kind, and do not do so by design; 0 without an interruption. Parts with the same number above 0 in `apart` are only compared with each other."""
+    kind, and do not do so by design; 0 without an interruption. Parts with the same number above 0 in `apart` are only
+    compared with each other."""
     lost = np.zeros(parts.shape)
     kind = np.zeros(len(parts)) if kind is None else kind
     apart = np.zeros(parts.shape, dtype=np.int8) if apart is None else apart
