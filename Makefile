@@ -126,7 +126,7 @@ benchmark-data: build
 variants: build
 	@mkdir -p results; $(call study,rods_data); $(call study,lattices_data)
 	@for family in rods lattices; do analysis/results/variants.py $(BUILD)/rodsweep results $$family; done
-	@$(call study,rods_front)
+	@$(call study,rods_front); $(call study,lattices_front)
 	@analysis/results/draw.sh results variants
 
 # The effect of each setting on the network of the paper.

@@ -67,17 +67,20 @@ def by_panel(file, tasks):
 
 
 def _scenes(file, tasks):
-    """{title: mask of tasks} by scene type and tip load."""
-    keys = [key for key in ("scene.type", "scene.tip_force_n") if key in file.parameters]
+    """{title: mask of tasks} by scene type, tip load and what holds the scene."""
+    keys = [key for key in ("scene.type", "scene.tip_force_n", "scene.held") if key in file.parameters]
     codes = np.column_stack([file.parameters[key].codes()[tasks] for key in keys])
-    loaded = {}
+    titles = {}
     for row in dict.fromkeys(map(tuple, codes.tolist())):
         of = (codes == row).all(axis=1)
         task = tasks[np.argmax(of)]
-        force = file.parameters[keys[-1]].values[task] if len(keys) > 1 else 0
         name = file.parameters["scene.type"].text(task).replace("_", " ")
-        loaded[name + (" at rest under a tip load" if np.any(np.nan_to_num(force)) else "")] = of
-    return loaded
+        if "scene.held" in keys and file.parameters["scene.held"].text(task) == "free":
+            name = "free " + name
+        if "scene.tip_force_n" in keys and np.any(np.nan_to_num(file.parameters["scene.tip_force_n"].values[task])):
+            name += " at rest under a tip load"
+        titles[name] = of
+    return titles
 
 
 def _line(file, tasks, kind):

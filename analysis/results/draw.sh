@@ -1,6 +1,7 @@
 #!/bin/bash
 # Draws the figures and tables of this folder from the files of the studies in RESULTS: `make studies` calls it.
 set -euo pipefail
+shopt -s extglob
 cd "$(dirname "$0")/../.."
 results=${1:?usage: analysis/results/draw.sh RESULTS [variants|ablation|score]}
 out=analysis/results
@@ -15,9 +16,9 @@ origins() { $out/origins.py "${@/#/$results/}"; }  # of what was drawn
 
 if [ "${2:-}" = variants ]; then
   for family in rods lattices; do
-    /usr/bin/python3 analysis/loss.py "$results"/${family}_variants/*.h5 -o "$results/${family}_variants" >$out/${family}_variants.txt
+    /usr/bin/python3 analysis/loss.py "$results"/${family}_variants/!(set_*).h5 -o "$results/${family}_variants" >$out/${family}_variants.txt
   done
-  table summary rods_front
+  for study in rods_front lattices_front; do table summary $study; done
   for scene in bending_rod helix; do  # all in the table, those that a figure can tell apart in it
     figures front rods_front --scene $scene --tolerance 1e-2,1e-3 >>$out/rods_front.txt
     figures front rods_front --scene $scene --tolerance 1e-2,1e-3 --guess "zero,subspace 10,regression 6,copingnet factors_16,\

@@ -48,6 +48,7 @@ LATTICES = {
     "tree_32": {"network.couplings": "tree", "training.loss": "energy"},
     "all_32_seed_2": {"seed": 2},
     "all_32_seed_3": {"seed": 3},
+    "all_32_100_steps": {"data": "100_steps", "training.epochs": 26},    # as many steps of the optimiser as lattices.h5
 }
 
 
@@ -94,6 +95,7 @@ DATA = {
     "100": None,
     "0.01_s": {"time.step_s": 0.01},
     "0.005_s": {"time.step_s": 0.005},
+    "100_steps": {"time.steps": 100, "record.systems": "first"},
 }
 
 
@@ -118,7 +120,7 @@ NOT_ON_HELICES = {"size_16", "size_64", "steps_2", "steps_8", "hidden_layers_3",
 
 FAMILIES = {
     "rods": Family("train_rods", "rods_variants", {"training.epochs": 15}, RODS),
-    "lattices": Family("train_lattices", "lattices_variants", {"training.epochs": 5}, LATTICES),
+    "lattices": Family("train_lattices", "lattices_variants", {"training.epochs": 5}, LATTICES, "lattices_data"),
     "ablation_bending": ablation("bending", 10),
     "ablation_helix": ablation("helix", 5, NOT_ON_HELICES),
 }

@@ -131,7 +131,7 @@ class Tables:
             found = itertools.takewhile(str.strip, inside[_first(inside, 0, "the cheapest", f"cheapest in {name}.txt") + 1:])
             settings = {cells[0].group(): cells[1].group() for cells in map(_cells, found)}
             times = {kind: find_cell(inside, "*", "the cheapest", kind, "µs") for kind in kinds}
-            rows.append([text, f"{int(joints):,}", *(f"{times[kind].partition(' ')[0]}{_ways(settings[kind])}" for kind in kinds),
+            rows.append([text, f"{int(joints):,}", *(_time(times[kind]) + _ways(settings[kind]) for kind in kinds),
                          *(find_cell(inside, "*", "the cheapest", kind, over) for kind, over in factors)])
         return _markdown(rows)
 
@@ -200,6 +200,11 @@ def find_cell(lines, section, block, row, column):
 
 def _markdown(rows):
     return "\n".join(f"| {' | '.join(row)} |" for row in (rows[0], ["---"] * len(rows[0]), *rows[1:]))
+
+
+def _time(cell):
+    """"931 [912, 958] (4 of 5)" as "931 (4 of 5)"."""
+    return re.sub(r" \[.*?\]", "", cell)
 
 
 def _ways(setting):

@@ -68,6 +68,26 @@ class Combinations(running.Scripts):
         lines = {line.split(" [")[0] for line in self.blocks()[60]}
         self.assertIn("from zero jacobi from zero 10", lines)
 
+    def torn(self, which):
+        """Writes a closed loop with torn tasks: those where which(tasks' preconditioners, guesses, samples)."""
+        settings = {"closed_loop": True, "guesses": ("zero", "quadratic")}
+        self.write(**settings)
+        with h5py.File(self.path) as h5:
+            of = which(h5["tasks/parameters/solve.preconditioner"][:], h5["tasks/own_guess"][:], h5["tasks/sample"][:])
+        self.write(failed={int(task): "torn" for task in np.flatnonzero(of)}, **settings)
+
+    def test_where_all_of_a_kind_failed_once_the_fastest_says_so(self):
+        self.torn(lambda preconditioner, guess, sample: (guess == 0) & (sample == 2))
+        lines = self.blocks()[60]
+        self.assertTrue([line for line in lines if line.startswith("from zero icc from zero 19 (4 of 5)")])
+        self.assertTrue([line for line in lines if line.startswith("classical guess") and "of 5" not in line])
+
+    def test_a_preconditioner_that_always_failed_from_zero_has_no_ratios(self):
+        self.torn(lambda preconditioner, guess, sample: (preconditioner == b"icc") & (guess == 0))
+        lines = self.blocks()[60]
+        self.assertFalse([line for line in lines if line.startswith("icc from zero")])
+        self.assertIn(" - - ", next(line for line in lines if line.startswith("icc from quadratic")))
+
     def test_without_what_it_needs_it_says_so(self):
         self.write(guesses=("previous", "quadratic"))
         self.refused("combinations.py", "sweep.h5", "--x", "scene.segments", words="zero guess")
