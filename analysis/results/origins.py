@@ -99,16 +99,15 @@ def moment(text):
 
 
 def disturbed(file):
-    """Share of solves that are left out of times; "-" if no single solve was timed."""
+    """Share of the time of solves that interruptions took; "-" if no single solve was timed."""
     from rodsweep.reading import measures, timings
     if not timings.timed(file):
         return "-"
     sims = measures.simulations(file, file.complete)
     if not len(sims):
         return "-"
-    part = timings.times(file, sims)["all"]
-    lost_s, kept_s = part.lost_s.sum(), part.kept_s.sum()
-    return f"{100 * lost_s / (lost_s + kept_s):.1f} %" if kept_s else "-"
+    share = timings.lost_share(timings.times(file, sims)["all"], sims)
+    return f"{100 * share:.1f} %" if share == share else "-"
 
 
 def write(rows):

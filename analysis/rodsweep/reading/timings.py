@@ -251,16 +251,25 @@ def _direct_means(file, tasks):
     return np.divide(sums * 1e6, kept, out=np.full(sums.shape, np.nan), where=kept > 0), solves
 
 
+def lost_share(part, sims):
+    """The share of a Times that interruptions took; NaN if nothing was timed."""
+    lost_s, kept_s = _total(part.lost_s, sims), _total(part.kept_s, sims)
+    return float(quotient(lost_s, lost_s + kept_s))
+
+
+def _total(values, sims):
+    """Over simulations; guesses that are paired share their rows. NaN: what a simulation did not time."""
+    return np.where(sims.own, np.nansum(values, axis=1), np.nan_to_num(values).max(axis=1, initial=0)).sum()
+
+
 def interruptions(part, sims):
     """A sentence on the rows that a Times leaves out; empty if there are none."""
-    solves, left_out, lost_s, kept_s = (
-        np.where(sims.own, np.nansum(value, axis=1), np.nan_to_num(value).max(axis=1, initial=0)).sum()
-        for value in (part.solves, part.interrupted, part.lost_s, part.kept_s))
+    solves, left_out = _total(part.solves, sims), _total(part.interrupted, sims)
     if not left_out:
         return ""
     found = (f"Left out: {left_out:.0f} of {solves:.0f} solves that the operating system interrupted "
              f"(a part lasted over {INTERRUPTED} times its median).")
-    share = lost_s / (lost_s + kept_s)
+    share = lost_share(part, sims)
     if left_out < FEW or share <= SUSPICIOUS:
         return found
     return (f"{found} Interruptions took {share:.0%} of the time: these times are not to be trusted. The machine "
