@@ -52,7 +52,7 @@ done
 pretrained=network/pretrained
 /usr/bin/python3 analysis/loss.py $pretrained/{rods,rods-large,bending-paper,bending-paper-best,helix-paper,helix-paper-best}.h5 \
   -o $out >$out/pretrained.txt
-/usr/bin/python3 analysis/loss.py $pretrained/{knot,tree,falling,stiff}-paper-best.h5 $pretrained/seeds/*.h5 \
+/usr/bin/python3 analysis/loss.py $pretrained/{knot,tree,falling,stiff}-paper-best.h5 $pretrained/lattices.h5 $pretrained/seeds/*.h5 \
   -o $out >$out/pretrained_scenes.txt
 rm $out/knot-paper-best-and-*-loss.png
 for study in temporal_bending temporal_helix; do
