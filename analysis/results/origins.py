@@ -31,8 +31,8 @@ def job_checksum(job):
 
 
 def models_checksum(job, folder):
-    """Of the models of a parsed job, whose paths start at a folder; "-" without models."""
-    paths = sorted(set(re.findall(r'"model": "([^"]+)"', json.dumps(job))))
+    """Of the models of a parsed job that come along, whose paths start at a folder; "-" without models."""
+    paths = sorted(path for path in set(re.findall(r'"model": "([^"]+)"', json.dumps(job))) if "/results/" not in path)
     digest = hashlib.sha256()
     for path in paths:
         with open(os.path.join(folder, path), "rb") as file:
