@@ -13,6 +13,7 @@ table.
 
 import hashlib
 import json
+import math
 import os
 import re
 import sys
@@ -107,7 +108,7 @@ def disturbed(file):
     if not len(sims):
         return "-"
     share = timings.lost_share(timings.times(file, sims)["all"], sims)
-    return f"{100 * share:.1f} %" if share == share else "-"
+    return f"{100 * share:.1f} %" if not math.isnan(share) else "-"
 
 
 def write(rows):

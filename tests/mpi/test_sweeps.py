@@ -335,6 +335,7 @@ class Outcomes(SweepCase):
         self.rodsweep(3, "run", path, "--resume")
         with open("results/fresh.h5", "rb") as file:
             self.assertEqual(file.read(), finished)
+        self.assertEqual([s["tasks"] for s in status("results/fresh.h5")["runs"]], [6])
 
     def test_more_workers_than_cores_are_warned_of_and_marked(self):
         ranks = len(os.sched_getaffinity(0)) + 2

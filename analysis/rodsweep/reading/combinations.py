@@ -50,7 +50,7 @@ class Cell:
     combinations: list
 
     def cheapest(self, kind):
-        """The fastest by the median over draws, among those that were timed in most of them; None if none was."""
+        """The fastest by the median over draws, among those that were timed in the most draws; None if none was."""
         there = [one for one in self.combinations if one.kind == kind and one.timed()]
         return min(there, key=lambda one: (-one.timed(), np.nanmedian(one.time_us))) if there else None
 
