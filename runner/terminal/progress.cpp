@@ -10,6 +10,8 @@ namespace rodsweep {
 
 namespace {
 
+constexpr double recent = 100;  // tasks
+
 double seconds(Progress::Clock::duration span) { return std::chrono::duration<double>(span).count(); }
 
 }  // namespace
@@ -22,6 +24,7 @@ void Progress::finished(TaskOutcome outcome, double cost, double busy_s) {
   if (outcome != TaskOutcome::ok) ++failed_;
   done_cost_ += cost;
   busy_s_ += busy_s;
+  if (cost > 0) pace_ += (busy_s / cost - pace_) / std::min(static_cast<double>(done_), recent);
 }
 
 void Progress::uncount(TaskOutcome outcome, double cost, double busy_s) {
@@ -33,8 +36,8 @@ void Progress::uncount(TaskOutcome outcome, double cost, double busy_s) {
 
 std::optional<double> Progress::seconds_left(Clock::time_point now) const {
   if (done_ == 0 || done_cost_ <= 0) return std::nullopt;
-  const double whole = busy_s_ / done_cost_ * work_.cost / work_.workers;
-  const double left = whole - seconds(now - begin_);
+  const double whole = busy_s_ + pace_ * (work_.cost - done_cost_);
+  const double left = whole / work_.workers - seconds(now - begin_);
   if (left <= 0) return std::nullopt;  // the last tasks take longer than estimated
   return left;
 }

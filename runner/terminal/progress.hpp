@@ -1,7 +1,9 @@
 // The progress of a sweep: done, failed, total, rate, time left. Shown as a bar on a terminal, as lines in a log.
 //
-// Tasks are dispatched longest first, so the time left is estimated from cost, not from the number of tasks.
-// Total time = s * cost / W, with s the measured seconds per unit of cost and W the number of workers.
+// Tasks are dispatched longest first, so the time left is estimated from cost, not from the number of tasks:
+// (b + s c) / W - t, with b the time of finished tasks, c the cost of the others, W the number of workers, t the time
+// since the start, and s the seconds per unit of cost, a mean over the last 100 tasks or so. Older tasks say little: costs
+// do not know the method, and the first tasks are often references of another kind than the rest.
 #pragma once
 
 #include <chrono>
@@ -43,6 +45,7 @@ class Progress {
   Work work_;
   std::int64_t done_ = 0, failed_ = 0;  ///< in this run
   double done_cost_ = 0, busy_s_ = 0;
+  double pace_ = 0;  ///< s
   Clock::time_point begin_;
 };
 

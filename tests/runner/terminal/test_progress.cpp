@@ -33,6 +33,14 @@ TEST_CASE("the time left is weighted by the cost of tasks") {
   CHECK_FALSE(progress.seconds_left(start + seconds(101)));
 }
 
+TEST_CASE("the time left follows recent tasks, not a first one of another kind") {
+  Console silent(false);
+  Progress progress(silent, {401, 0, 0, 1400, 1}, start);
+  progress.finished(TaskOutcome::ok, 1000, 10);
+  for (int i = 0; i < 300; ++i) progress.finished(TaskOutcome::ok, 1, 1);
+  CHECK(progress.seconds_left(start + seconds(310)).value() == Approx(100).epsilon(0.01));
+}
+
 TEST_CASE("progress counts earlier runs, but judges the rate by this one") {
   Console silent(false);
   Progress progress(silent, {400, 100, 1, 300, 1}, start);
