@@ -40,7 +40,7 @@ sources = $$(find solver network runner tests -name '*.[ch]pp')
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), write results/report.html'
 	@echo 'make report        results/report.html again: what the demo found, and the studies that were run, as a page to read'
-	@echo 'make score         the cheapest way to an error of the motion, with and without guesses, by scene (two and a half hours; likewise)'
+	@echo 'make score         the cheapest way to an error of the motion, with and without guesses, by scene (two hours; likewise)'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (two hours; continued if it was stopped)'
 	@echo 'make archive       results of make score and make studies, models and tables, with checksums: results/archive.tar'
 	@echo 'make benchmark-data   linear systems for those who try guesses elsewhere, results/benchmark (ten minutes)'

@@ -24,6 +24,9 @@ line. A text in @<<...>> replaces the visible text there, and is not shown:
 
 {{ score("10 %", "1 %") }} is the table of score.txt at these errors. {{ cheapest("net_gusts", {"8 × 8": "Net, scene.rows
 = 8:"}) }} is one of the fastest combinations, with a row for each of these blocks. {{ origins() }} says what made the tables.
+{{ fastest("direct solve") }} is where a kind is the fastest in score.txt, as "helices at 1 % and trees at 1 and 0.1 %", {{
+among("direct solve") }} where it is one of several whose intervals overlap, and {{ chosen("CG, Jacobi", "copingnet") }} where
+its setting has these words.
 
 The numbers in the cells are styles. A cell has one number per column in its address, each with or without its
 interval, [.00, .00]. Text in `backticks` and columns called `-` do not change. In tables, a | in an address is \\|.
@@ -34,6 +37,7 @@ import os
 import re
 import sys
 from decimal import ROUND_HALF_UP, Decimal
+from typing import NamedTuple
 
 import jinja2
 
@@ -48,12 +52,27 @@ DISTRUSTED = "not to be trusted"    # in a line below times of which too many we
 WITH_INTERVAL = re.compile(rf"({NUMBER.pattern})[*_]*(?:\s*\[({NUMBER.pattern}), ({NUMBER.pattern})\])?")
 
 
+class Answer(NamedTuple):
+    """A row of score.txt: ms of a simulated second, whether its error is at most that of the block, the interval of its
+    time over that of the cheapest setting, and its setting."""
+    time: Decimal
+    kept: bool
+    low: Decimal
+    high: Decimal
+    setting: str
+
+
 class NotFound(Exception):
     """The message names the table and what it lacks."""
 
 
 class Tables:
     """The tables of a folder, each read once. Those that are older than their job or models are not quoted."""
+
+    KINDS = {"direct solve": "direct solve", "CG from zero": "CG from zero", "CG, classical guess": "classical guess",
+             "CG, learned guess": "learned guess", "CG, learned preconditioner": "learned preconditioner",
+             "CG, Jacobi": "Jacobi, any guess", "Gauss-Seidel": "Gauss–Seidel"}
+    ANY = "CG, Jacobi"    # its settings are among those of the others
 
     def __init__(self, folder):
         self.folder, self.lines = folder, {}
@@ -85,36 +104,39 @@ class Tables:
         return self.lines[name]
 
     def score(self, *levels):
-        """A Markdown table of the times in score.txt at these errors, such as "1 %". The least time is bold; a time in
-        parentheses is of a setting whose error is above its level on the test draws."""
-        kinds = {"direct solve": "direct solve", "CG from zero": "CG from zero", "CG, classical guess": "classical guess",
-                 "CG, learned guess": "learned guess", "CG, learned preconditioner": "learned preconditioner",
-                 "CG, Jacobi": "Jacobi, any guess", "Gauss-Seidel": "Gauss–Seidel"}
-        lines = self._lines("score")
-        scenes = dict.fromkeys(found.group(1) for found in map(re.compile(r"(.+), error \S+ %").match, lines) if found)
-        rows = [["scene", "error", *kinds.values()]]
-        for scene in scenes:
-            for level in levels:
-                block = f"{scene}, error {level}"
-                times = [self._score_cell(lines, block, kind) for kind in kinds]
-                least = min((seconds for seconds, kept in times if kept), default=None)
-                rows.append([scene, level, *(self._score_text(seconds, kept, seconds == least) for seconds, kept in times)])
+        """A Markdown table of the times in score.txt at these errors, such as "1 %". Bold: the fastest kinds. In
+        parentheses: the setting's error is above its level on the test draws."""
+        rows = [["scene", "error", *self.KINDS.values()]]
+        for (scene, level), answers in self._scores().items():
+            if level in levels:
+                best = _fastest(answers)
+                rows.append([scene, level, *(_time_text(answers.get(kind), kind in best) for kind in self.KINDS)])
         return _markdown(rows)
 
-    @staticmethod
-    def _score_cell(lines, block, kind):
-        """(ms of a simulated second or None, whether the error is at most that of the block)"""
-        if any(line.startswith(f"{block}: ") for line in lines):    # no setting reached it
-            return None, False
-        time, error = (find_cell(lines, block, block, kind, column) for column in ("ms/s", "error there"))
-        return (None, False) if time == "-" else (Decimal(time), re.fullmatch(r"[\d.e-]+ %", error) is not None)
+    def fastest(self, kind):
+        """Where this kind alone is the fastest; "" if nowhere."""
+        return _places(place for place, answers in self._scores().items() if _fastest(answers) - {self.ANY} == {kind})
 
-    @staticmethod
-    def _score_text(seconds, kept, least):
-        if seconds is None:
-            return "–"
-        text = f"{seconds.normalize():f}"
-        return f"**{text}**" if least and kept else text if kept else f"({text})"
+    def among(self, kind):
+        """Where this kind is one of several fastest; "" if nowhere."""
+        return _places(place for place, answers in self._scores().items() if {kind} < _fastest(answers) - {self.ANY})
+
+    def chosen(self, kind, words):
+        """Where the setting of this kind has these words; "" if nowhere."""
+        return _places(place for place, answers in self._scores().items() if kind in answers and words in answers[kind].setting)
+
+    def _scores(self):
+        """{(scene, level): {kind: Answer}}, of the kinds with a setting"""
+        lines, made = self._lines("score"), {}
+        for found in filter(None, map(re.compile(r"(.+), error (\S+ %)").match, lines)):
+            block, answers = found.group(), made.setdefault(found.groups(), {})
+            for kind in self.KINDS if not any(line.startswith(f"{block}: ") for line in lines) else ():
+                time, error, interval, setting = (
+                    find_cell(lines, block, block, kind, column) for column in ("ms/s", "error there", "95 %", "setting"))
+                if time != "-":
+                    low, high = map(Decimal, interval.split(" to "))
+                    answers[kind] = Answer(Decimal(time), re.fullmatch(r"[\d.e-]+ %", error) is not None, low, high, setting)
+        return made
 
     def cheapest(self, name, blocks):
         """A Markdown table of the fastest combinations of each kind in a table of combinations: times in µs."""
@@ -198,6 +220,33 @@ def find_cell(lines, section, block, row, column):
     raise NotFound(f"row {row!r}")
 
 
+def _fastest(answers):
+    """The kinds that keep to the error and whose interval lies above no other's."""
+    kept = {kind: answer for kind, answer in answers.items() if answer.kept}
+    least = min((answer.high for answer in kept.values()), default=None)
+    return {kind for kind, answer in kept.items() if answer.low <= least}
+
+
+def _time_text(answer, fastest):
+    if answer is None:
+        return "–"
+    text = f"{answer.time.normalize():f}"
+    return f"**{text}**" if fastest else text if answer.kept else f"({text})"
+
+
+def _places(found):
+    """[("helix", "1 %"), ("knot", "1 %"), ("knot", "10 %")] as "helices at 1 % and knots at 1 and 10 %"."""
+    levels = {}
+    for scene, level in found:
+        levels.setdefault(scene, []).append(level.removesuffix(" %"))
+    plural = {"helix": "helices", "falling rods": "falling rods"}
+    return _listed([f"{plural.get(scene, scene + 's')} at {_listed(given)} %" for scene, given in levels.items()])
+
+
+def _listed(words):
+    return " and ".join([", ".join(words[:-1]), words[-1]] if words[1:] else words)
+
+
 def _markdown(rows):
     return "\n".join(f"| {' | '.join(row)} |" for row in (rows[0], ["---"] * len(rows[0]), *rows[1:]))
 
@@ -253,7 +302,8 @@ def rendered(template, folder=TABLES):
     environment.filters["table"] = tables.table
     with open(template, encoding="utf-8") as file:
         return environment.from_string(file.read()).render(
-            cell=tables.cell, score=tables.score, cheapest=tables.cheapest, origins=tables.origins)
+            cell=tables.cell, score=tables.score, fastest=tables.fastest, among=tables.among, chosen=tables.chosen,
+            cheapest=tables.cheapest, origins=tables.origins)
 
 
 def templates(root=ROOT):

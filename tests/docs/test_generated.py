@@ -59,18 +59,39 @@ class Pages(unittest.TestCase):
             self.page(template)
         return str(refused.exception)
 
-    def test_the_score_is_a_table_of_times_at_errors(self):
+    def write_score(self):
+        """A helix on which the direct solve is the fastest, and a net on which CG from zero may be as fast."""
         kinds = ["cheapest of all", "direct solve", "CG from zero", "CG, classical guess", "CG, learned guess",
                  "CG, learned preconditioner", "CG, Jacobi", "Gauss-Seidel"]
-        times = [("2.5", "3 %"), ("2.5", "3 %"), ("10", "3 %"), ("1.25", "(12 %)"), ("4", "3 of 10 failed"), ("-", "-"), ("2e+03", "3 %"),
-                 ("-", "-")]
-        rows = [["net, error 10 %", "ms/s", "error there"], *([kind, *cells] for kind, cells in zip(kinds, times))]
-        lines = [f"{row[0]:<30}{row[1]:>10}{row[2]:>20}" for row in rows]
-        self.write("score.txt", "\n".join([*lines, "", "net, error 1 %: reached by no setting", ""]))
+        direct, failed = ("2.5", "1 to 1", "3 %"), ("4", "0.8 to 0.9", "3 of 10 failed")
+        others = [("1.25", "0.4 to 0.6", "(12 %)"), failed, ("-", "-", "-"), ("2e+03", "9 to 1e+03", "3 %"), ("-", "-", "-")]
+        lines = []
+        for scene, low in (("net", 0.99), ("helix", 1.01)):
+            times = [direct, direct, ("10", f"{low} to 5", "3 %"), *others]
+            rows = [[f"{scene}, error 10 %", "ms/s", "95 %", "error there", "setting"]]
+            rows += [[kind, *cells, f"{kind} {scene}"] for kind, cells in zip(kinds, times)]
+            lines += [f"{row[0]:<30}{row[1]:>10}{row[2]:>20}{row[3]:>20}{row[4]:>60}" for row in rows]
+            lines += ["", f"{scene}, error 1 %: reached by no setting", ""]
+        self.write("score.txt", "\n".join(lines))
+
+    def test_the_score_is_a_table_of_times_at_errors(self):
+        self.write_score()
         table = self.page("{{ score('10 %', '1 %') }}").splitlines()
         self.assertEqual(table[0].split(" | ")[:4], ["| scene", "error", "direct solve", "CG from zero"])
-        self.assertEqual(table[2], "| net | 10 % | **2.5** | 10 | (1.25) | (4) | – | 2000 | – |")
-        self.assertEqual(table[3], "| net | 1 % | – | – | – | – | – | – | – |")
+        self.assertEqual(table[2:], ["| net | 10 % | **2.5** | **10** | (1.25) | (4) | – | 2000 | – |",
+                                     "| net | 1 % | – | – | – | – | – | – | – |",
+                                     "| helix | 10 % | **2.5** | 10 | (1.25) | (4) | – | 2000 | – |",
+                                     "| helix | 1 % | – | – | – | – | – | – | – |"])
+
+    def test_sentences_name_the_fastest_kinds_of_the_score(self):
+        self.write_score()
+        for asked, found in (("fastest('direct solve')", "helices at 10 %"), ("among('direct solve')", "nets at 10 %"),
+                             ("fastest('CG from zero')", ""), ("among('CG from zero')", "nets at 10 %"),
+                             ("fastest('CG, classical guess')", ""),    # its errors are too large
+                             ("chosen('CG, Jacobi', 'Jacobi net')", "nets at 10 %"), ("chosen('Gauss-Seidel', '')", "")):
+            self.assertEqual(self.page("{{ " + asked + " }}").strip(), found, asked)
+        self.assertEqual(pages._places([("tree", "1 %"), ("tree", "0.1 %"), ("tree", "10 %"), ("knot", "1 %")]),
+                         "trees at 1, 0.1 and 10 % and knots at 1 %")
 
     def test_the_fastest_combinations_have_a_row_a_block(self):
         rows = [("the cheapest", "", "µs", "over classical guess", "over from zero", "over direct"),
