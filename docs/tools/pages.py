@@ -22,16 +22,17 @@ line. A text in @<<...>> replaces the visible text there, and is not shown:
     | bending rods@<<Bending rod>> | .00 **.00** |
     {% endfilter %}
 
-{{ score("10 %", "1 %") }} is the table of score.txt at these errors. {{ cheapest("net_gusts", {"8 × 8": "Net, scene.rows
-= 8:"}) }} is one of the fastest combinations, with a row for each of these blocks. {{ origins() }} says what made the tables.
-{{ fastest("direct solve") }} is where a kind is the fastest in score.txt, as "helices at 1 % and trees at 1 and 0.1 %", {{
-among("direct solve") }} where it is one of several whose intervals overlap, and {{ chosen("CG, Jacobi", "copingnet") }} where
-its setting has these words.
+{{ score("10 %", "1 %") }} is the table of score.txt at these errors. {{ fastest("direct solve") }} is where a kind is the
+fastest there, as "helices at 1 % and trees at 1 and 0.1 %", {{ among("direct solve") }} where it is one of several whose
+intervals overlap, and {{ chosen("CG, Jacobi", "copingnet") }} where its setting has these words; {{ winners() }} is a
+table of the former two. {{ cheapest("net_gusts", {"8 × 8": "Net, scene.rows = 8:"}) }} is one of the fastest combinations,
+with a row for each of these blocks. {{ origins() }} says what made the tables.
 
 The numbers in the cells are styles. A cell has one number per column in its address, each with or without its
 interval, [.00, .00]. Text in `backticks` and columns called `-` do not change. In tables, a | in an address is \\|.
 """
 
+import functools
 import itertools
 import os
 import re
@@ -107,7 +108,7 @@ class Tables:
         """A Markdown table of the times in score.txt at these errors, such as "1 %". Bold: the fastest kinds. In
         parentheses: the setting's error is above its level on the test draws."""
         rows = [["scene", "error", *self.KINDS.values()]]
-        for (scene, level), answers in self._scores().items():
+        for (scene, level), answers in self._scores.items():
             if level in levels:
                 best = _fastest(answers)
                 rows.append([scene, level, *(_time_text(answers.get(kind), kind in best) for kind in self.KINDS)])
@@ -115,16 +116,24 @@ class Tables:
 
     def fastest(self, kind):
         """Where this kind alone is the fastest; "" if nowhere."""
-        return _places(place for place, answers in self._scores().items() if _fastest(answers) - {self.ANY} == {kind})
+        return _places(place for place, answers in self._scores.items() if _fastest(answers) - {self.ANY} == {kind})
 
     def among(self, kind):
         """Where this kind is one of several fastest; "" if nowhere."""
-        return _places(place for place, answers in self._scores().items() if {kind} < _fastest(answers) - {self.ANY})
+        return _places(place for place, answers in self._scores.items() if {kind} < _fastest(answers) - {self.ANY})
 
     def chosen(self, kind, words):
         """Where the setting of this kind has these words; "" if nowhere."""
-        return _places(place for place, answers in self._scores().items() if kind in answers and words in answers[kind].setting)
+        return _places(place for place, answers in self._scores.items()
+                       if kind in answers and words in answers[kind].setting)
 
+    def winners(self):
+        """A Markdown table: where each kind is the fastest, or one of several."""
+        return _markdown([["", "the fastest", "one of the fastest"],
+                          *([name, self.fastest(kind) or "nowhere", self.among(kind) or "nowhere"]
+                            for kind, name in self.KINDS.items() if kind != self.ANY)])
+
+    @functools.cached_property
     def _scores(self):
         """{(scene, level): {kind: Answer}}, of the kinds with a setting"""
         lines, made = self._lines("score"), {}
@@ -303,7 +312,7 @@ def rendered(template, folder=TABLES):
     with open(template, encoding="utf-8") as file:
         return environment.from_string(file.read()).render(
             cell=tables.cell, score=tables.score, fastest=tables.fastest, among=tables.among, chosen=tables.chosen,
-            cheapest=tables.cheapest, origins=tables.origins)
+            winners=tables.winners, cheapest=tables.cheapest, origins=tables.origins)
 
 
 def templates(root=ROOT):

@@ -2,8 +2,8 @@
 //
 // Tasks are dispatched longest first, so the time left is estimated from cost, not from the number of tasks:
 // (b + s c) / W - t, with b the time of finished tasks, c the cost of the others, W the number of workers, t the time
-// since the start, and s the seconds per unit of cost, a mean over the last 100 tasks or so. Older tasks say little: costs
-// do not know the method, and the first tasks are often references of another kind than the rest.
+// since the start, and s the seconds per unit of cost, a mean over the last 100 tasks or so. Older tasks say little:
+// costs do not know the method, and the first tasks are often references.
 #pragma once
 
 #include <chrono>

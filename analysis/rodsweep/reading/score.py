@@ -9,9 +9,9 @@ assembly, guesses and solves, over the simulated time. A step that took CLIPPED 
 interrupted, and counts as that.
 
 Settings are chosen on the draws of one file (tuning) and measured on those of another (test): the fastest of many is
-fast also by chance. The most exact of many is exact by chance, too, where small differences grow: CG reaches an error only
-if the direct solve with the same integrator, step and Newton iterations reaches it. A model may have others beside it that differ only in the seed of their training,
-seeds/NAME-2.h5, ...: then learned settings are measured with each of them.
+fast also by chance. Where small differences grow, the most exact of many is exact by chance too: CG reaches an error
+only if the direct solve with the same integrator, step and Newton iterations reaches it. A model may have others beside
+it that differ only in the seed of their training, seeds/NAME-2.h5, ...: then learned settings are measured with each.
 """
 
 import copy
