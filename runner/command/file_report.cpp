@@ -80,6 +80,12 @@ std::optional<double> rate_of(const FileSummary& file) {
   return static_cast<double>(run.tasks) / since;
 }
 
+std::optional<double> seconds_left(const FileSummary& file) {
+  if (!is_alive(file)) return std::nullopt;
+  const double left = file.runs.back().left_s - file.silent_s;
+  return left > 0 ? std::optional(left) : std::nullopt;
+}
+
 nlohmann::ordered_json to_json(const FileSummary& file) {
   using Json = nlohmann::ordered_json;
   Json json{{"file", file.path.native()},
@@ -95,7 +101,8 @@ nlohmann::ordered_json to_json(const FileSummary& file) {
   const std::optional<double> rate = rate_of(file);
   const Share share = share_of(file);
   json["tasks_per_s"] = rate ? Json(*rate) : Json();
-  json["left_s"] = rate ? Json(static_cast<double>(share.left) / *rate) : Json();
+  const std::optional<double> left = seconds_left(file);
+  json["left_s"] = left ? Json(*left) : Json();
   json["shard"] =
       share.shard ? Json{{"number", share.shard->number}, {"of", share.shard->of}, {"tasks", share.tasks}} : Json();
   json["failures"] = Json::array();

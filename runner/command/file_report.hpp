@@ -27,6 +27,9 @@ bool is_alive(const FileSummary& file);
 /// Tasks per second of the current run; none before its first task.
 std::optional<double> rate_of(const FileSummary& file);
 
+/// Time left of the current run, by its own estimate; none before its first task and when it is overdue.
+std::optional<double> seconds_left(const FileSummary& file);
+
 /// One line about run `index` of the sweep.
 std::string run_text(const FileSummary& file, std::size_t index);
 

@@ -27,8 +27,8 @@ std::string progress_text(const FileSummary& file) {
   if (share.shard) text += fmt::format(", shard {} of {}", share.shard->number, share.shard->of);
   text += fmt::format(": {} of {} done ({} %): {}", done, counted(share.tasks, "task"),
                       share.tasks > 0 ? 100 * done / share.tasks : 100, outcomes_text(file));
-  if (const auto rate = rate_of(file))
-    text += fmt::format("; {:.3g} tasks/s, {} left", *rate, duration_text(static_cast<double>(share.left) / *rate));
+  if (const auto rate = rate_of(file)) text += fmt::format("; {:.3g} tasks/s", *rate);
+  if (const auto left = seconds_left(file)) text += fmt::format(", {} left", duration_text(*left));
   return text;
 }
 

@@ -350,7 +350,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
       counting_tries(extension ? extending_body(plan, *extension, write, warn) : task_body(plan, write), plan, file);
   const auto now_and_then = [&] {
     file.commit_if_due();
-    if (mpi.rank() == 0) file.beat();
+    if (mpi.rank() == 0) file.beat(progress.seconds_left(Progress::Clock::now()));
   };
   const Seconds start = Clock::now() - begin;
   const auto slow_start_s = options.time_limit_s && start.count() > *options.time_limit_s && to_do > 0

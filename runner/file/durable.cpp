@@ -40,12 +40,13 @@ bool SyncedFile::is_in_place() const {
          mine.st_ino == there.st_ino;
 }
 
-void SyncedFile::beat() {
-  constexpr std::chrono::seconds pause{5};
+bool SyncedFile::beat() {
+  constexpr std::chrono::seconds pause{1};
   const auto now = std::chrono::steady_clock::now();
-  if (now < next_beat_) return;
+  if (now < next_beat_) return false;
   next_beat_ = now + pause;
   futimens(descriptor_.number(), nullptr);
+  return true;
 }
 
 void sync_folder_of(const std::filesystem::path& path) {

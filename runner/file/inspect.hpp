@@ -52,7 +52,7 @@ struct FileSummary {
   std::vector<RunRow> runs;
 };
 
-/// Liveness timeout: a run renews its file's modification time every 5 s.
+/// Liveness timeout: a run renews its file's modification time every second.
 inline constexpr double alive_s = 30;
 
 /// Time since the file's modification by this host's clock; at least 0, because the file server's clock may differ.

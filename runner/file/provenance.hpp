@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 namespace rodsweep {
@@ -18,8 +19,9 @@ struct Provenance {
 /// One run of the program on a sweep: a row of /runs.
 struct RunRow {
   Provenance provenance;
-  std::string end_utc;      ///< empty: still running, or killed
-  int exit_code = -1;       ///< -1: still running, or killed
+  std::string end_utc;                                       ///< empty: still running, or killed
+  int exit_code = -1;                                        ///< -1: still running, or killed
+  double left_s = std::numeric_limits<double>::quiet_NaN();  ///< at the last heartbeat; NaN: unknown
   std::string source;       ///< the extended or merged file that had this run; empty: a run of this file
   std::int64_t tasks = 0;   ///< tasks that this run completed (inspect())
   double task_seconds = 0;  ///< sum of their wall times (inspect())

@@ -432,7 +432,11 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
   commit_if_due();
 }
 
-void ResultsFile::beat() { open_->synced.beat(); }
+void ResultsFile::beat(std::optional<double> left_s) {
+  if (!open_->synced.beat()) return;
+  open_->run.left_s = left_s.value_or(NAN);
+  write_run_row();
+}
 
 void ResultsFile::end_run(const std::string& end_utc, int exit_code) {
   open_->run.end_utc = end_utc;

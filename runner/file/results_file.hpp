@@ -85,8 +85,9 @@ class ResultsFile {
   void commit_if_due();
   std::int64_t committed() const;  ///< number of tasks, of this rank in this run
 
-  /// Independent, one rank: the heartbeat; renews the file's modification time every few seconds.
-  void beat();
+  /// Independent, first rank: the heartbeat. Once a second it renews the file's modification time and stores the
+  /// time left.
+  void beat(std::optional<double> left_s);
 
   /// Independent, one rank: stores the end of this run in its row of /runs.
   void end_run(const std::string& end_utc, int exit_code);

@@ -10,12 +10,13 @@ namespace {
 
 struct RunColumn {
   const char* path;
-  std::variant<std::string& (*)(RunRow&), int& (*)(RunRow&), bool& (*)(RunRow&)> value;
+  std::variant<std::string& (*)(RunRow&), int& (*)(RunRow&), bool& (*)(RunRow&), double& (*)(RunRow&)> value;
   std::int64_t text_bytes;  ///< 0: a number
   const char* meaning;
+  const char* unit = "1";
 };
 
-constexpr std::array<RunColumn, 14> run_columns{{
+constexpr std::array<RunColumn, 15> run_columns{{
     {"/runs/begin", [](RunRow& run) -> std::string& { return run.provenance.begin_utc; }, 24,
      "start of the run (UTC); empty: unused row"},
     {"/runs/end", [](RunRow& run) -> std::string& { return run.end_utc; }, 24,
@@ -39,6 +40,8 @@ constexpr std::array<RunColumn, 14> run_columns{{
      "number of shards; 0: the whole sweep"},
     {"/runs/exit_code", [](RunRow& run) -> int& { return run.exit_code; }, 0,
      "exit code of the program; -1: it still runs, or was killed"},
+    {"/runs/left_s", [](RunRow& run) -> double& { return run.left_s; }, 0,
+     "time left at the last heartbeat of the run, by its own estimate; NaN: unknown", "s"},
     {"/runs/oversubscribed", [](RunRow& run) -> bool& { return run.provenance.oversubscribed; }, 0,
      "1: more ranks than cores; times are not valid"},
 }};
@@ -71,7 +74,7 @@ std::vector<Field> run_fields() {
         [&](std::string&) { fields.push_back(text_field(column.path, column.text_bytes, {run_rows}, column.meaning)); },
         [&](auto& number) {
           using T = Stored<std::decay_t<decltype(number)>>;
-          fields.push_back(number_field<T>(column.path, {run_rows}, "1", column.meaning));
+          fields.push_back(number_field<T>(column.path, {run_rows}, column.unit, column.meaning));
         });
   }
   return fields;
@@ -98,6 +101,7 @@ std::vector<RunRow> read_runs(const hdf5::File& file) {
 void write_run(const hdf5::File& file, std::size_t row, const RunRow& run) {
   RunRow written = run;
   for (auto column = run_columns.rbegin(); column != run_columns.rend(); ++column) {
+    if (!hdf5::exists(file.id(), column->path)) continue;
     visit_value(
         *column, written, [&](const std::string& text) { hdf5::write_text_row(file.id(), column->path, row, text); },
         [&](auto number) {

@@ -17,7 +17,7 @@ std::vector<Field> run_fields();
 /// The used rows. Columns missing in older files are skipped.
 std::vector<RunRow> read_runs(const hdf5::File& file);
 
-/// Writes a whole row. Writes the begin last, because it marks the row as used.
+/// Writes a whole row, but columns missing in older files. Writes the begin last, because it marks the row as used.
 void write_run(const hdf5::File& file, std::size_t row, const RunRow& run);
 
 }  // namespace rodsweep

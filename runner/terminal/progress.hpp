@@ -37,8 +37,8 @@ class Progress {
 
   /// "120 of 400 tasks (30 %), 2 failed, 31.0/s, 1 min 20 s left"
   std::string text(Clock::time_point now) const;
-  std::optional<double> seconds_left(
-      Clock::time_point now) const;  ///< empty until a task has finished, or when overdue
+  /// Empty until a task has finished, or when overdue.
+  std::optional<double> seconds_left(Clock::time_point now) const;
 
  private:
   ProgressLine line_;

@@ -199,13 +199,10 @@ class Watching(SweepCase):
         self.assertEqual({r["host"] for r in now["running"]}, {os.uname().nodename})
         self.assertLessEqual({r["rank"] for r in now["running"]}, {1, 2})
         self.assertRegex(rodsweep(0, "status", "watched.h5").stdout,
-                         r"tasks/s, .* left\n  task \d+ .*, rank [12]\n(.*\n)?run 0: .* \S+ m?s ago\n$")
-
-        now = status("watched.h5")
-        self.assertAlmostEqual(now["left_s"], now["pending"] / now["tasks_per_s"])
+                         r"tasks/s.*\n  task \d+ .*, rank [12]\n(.*\n)?run 0: .* \S+ m?s ago\n$")
 
         watch = start(0, "status", "watched.h5", "--watch", "0.2")
-        self.assertIn("left", watch.stdout.readline())
+        self.assertTrue(any(" left" in line for line in watch.stdout))
         kill_all(process)
         process.communicate(timeout=600)
         rest, _ = watch.communicate(timeout=600)  # ends by itself

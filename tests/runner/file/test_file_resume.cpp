@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 
 #include "runner/file/hdf5.hpp"
@@ -98,7 +99,7 @@ TEST_CASE("resuming a complete file changes none of its bytes, so jobs that read
   const std::string before = bytes_of(folder / "a.h5");
   {
     ResultsFile file = resume(folder / "a.h5", plan);
-    file.beat();
+    file.beat(10.0);
     file.end_run("2025-01-01T00:00:00Z", 0);
     file.close();
   }
@@ -202,6 +203,9 @@ TEST_CASE("status can be read while the sweep writes") {
   REQUIRE(summary.runs.size() == 1);
   CHECK(summary.runs[0].exit_code == -1);
   CHECK(summary.runs[0].end_utc == "");
+  CHECK(std::isnan(summary.runs[0].left_s));
+  file.beat(90.5);
+  CHECK(inspect(folder / "a.h5").runs.at(0).left_s == 90.5);
 
   file.write(plan.task(0), synthetic_record(plan, 0));
   TaskRecord failed = synthetic_record(plan, 4);
