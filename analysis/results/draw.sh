@@ -12,7 +12,8 @@ figures() { script "$@" -o $out; }
 table() { script "$@" >"$out/$2.txt"; }
 clean() { sed -i "/\.\(png\|pdf\)\$/d" $out/*.txt; rm -f $out/*.pdf; }  # no paths of figures, no PDFs
 trap clean EXIT
-origins() { $out/origins.py "${@/#/$results/}"; }  # of what was drawn
+origins() { $out/origins.py "${@/#/$results/}"; }
+origins_of_drawn() { local names=("${!drawn[@]}"); origins "${names[@]/%/.h5}"; }
 
 if [ "${2:-}" = variants ]; then
   for family in rods lattices; do
@@ -24,7 +25,7 @@ if [ "${2:-}" = variants ]; then
     figures front rods_front --scene $scene --tolerance 1e-2,1e-3 --guess "zero,subspace 10,regression 6,copingnet factors_16,\
 copingnet factors_64,copingnet rods 3 to 0.01" >/dev/null
   done
-  origins "${!drawn[@]/%/.h5}"
+  origins_of_drawn
   exit
 fi
 if [ "${2:-}" = score ]; then
@@ -40,7 +41,7 @@ if [ "${2:-}" = ablation ]; then
     table summary ablation_${scene}_step --by time.step_s
   done
   figures long_term ablation_long_term --log-time >$out/ablation_long_term.txt
-  origins "${!drawn[@]/%/.h5}"
+  origins_of_drawn
   exit
 fi
 jacobi="--select solve.preconditioner=jacobi"
@@ -82,4 +83,4 @@ script balance balance_scenes >"$out/balance_scenes.txt"
 for study in lattice_swing lattice_preconditioners lattice_closed; do figures combinations $study >"$out/$study.txt"; done
 for study in net_gusts net_closed; do figures combinations $study --x scene.rows >"$out/$study.txt"; done
 rm $out/{lattice_preconditioners,lattice_closed,net_closed}-combinations.png
-origins "${!drawn[@]/%/.h5}"
+origins_of_drawn

@@ -124,6 +124,9 @@ class Pages(unittest.TestCase):
             else:
                 self.assertIn(".10", self.page(quote))
 
+    def test_every_table_here_is_of_its_job_and_models(self):
+        self.assertEqual(origins.older(origins.read()), {})
+
     def test_times_of_a_disturbed_block_are_not_quoted(self):
         disturbed = "  Left out: 9 of 99 solves. These times are not to be trusted.\n"
         self.write("busy.txt", TABLE.replace("     1,234\n", "     1,234\n" + disturbed))
