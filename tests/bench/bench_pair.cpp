@@ -16,6 +16,7 @@
 #include <string>
 
 #include "network/guess/end_to_end.hpp"
+#include "runner/file/provenance.hpp"
 #include "runner/training/model_file.hpp"
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/cg/petsc_session.hpp"
@@ -143,6 +144,7 @@ int main(int argc, char** argv) {
   const PetscSession petsc;
   const std::string path = argc > 1 ? argv[1] : RODSWEEP_SOURCE_DIR "/network/pretrained/bending-paper.h5";
   const auto model = read_model(path).model;
+  std::printf("revision %s; %s\n", source_revision().c_str(), library_versions().c_str());
   std::printf("%d rods, %d steps, %s\n\n", rods, steps, path.substr(path.rfind('/') + 1).c_str());
   std::printf("%-18s %10s %10s %12s %12s %8s\n", "at j = 0", "Newton", "CG", "distance / L", "imbalance", "failed");
   const std::pair<const char*, First> ways[]{{"from zero", First::zero},

@@ -11,6 +11,7 @@
 
 #include "network/encoding/feature_encoder.hpp"
 #include "network/processor/coupled_inference.hpp"
+#include "runner/file/provenance.hpp"
 #include "runner/training/model_file.hpp"
 #include "solver/cg/block_preconditioner.hpp"
 #include "solver/cg/petsc_session.hpp"
@@ -187,6 +188,7 @@ Way way_of(const char* name, const std::shared_ptr<Solver>& solver) {
 int main(int argc, char** argv) {
   const PetscSession petsc;
   const StoredModel stored = read_model(argc > 1 ? argv[1] : RODSWEEP_SOURCE_DIR "/network/pretrained/lattices.h5");
+  std::printf("revision %s; %s\n", source_revision().c_str(), library_versions().c_str());
   for (const double youngs_modulus_pa : {3e5, 1e6, 1e7}) {
     const Case of(youngs_modulus_pa);
     const Rod& rod = of.scene.rods.front();
