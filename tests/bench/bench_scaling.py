@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""Two workers against one: the same sweep with 3 and with 2 ranks in turns; target: at least 1.8 times as fast.
+"""The same sweep with 1, 2, 4, ... workers, up to one on each core, in turns; target: two workers at least 1.8 times as
+fast as one.
 
-bench_scaling.py RODSWEEP MPIRUN [REPEATS]; it removes its files.
+bench_scaling.py RODSWEEP MPIRUN [REPEATS [SAMPLES]]; it removes its files. SAMPLES: a third of the tasks, by default 60
+a core. Times are those of whole commands, with the start of MPI and the file.
 """
 
 import json
@@ -13,7 +15,7 @@ import tempfile
 import time
 
 JOB = {
-    "name": "scaling", "kind": "sweep", "seed": 1, "samples": 60,
+    "name": "scaling", "kind": "sweep", "seed": 1,
     "scene": {"type": "bending_rod", "segments": {"grid": [20, 30, 40]}, "length_m": {"uniform": [1, 5]},
               "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]},
               "torsion_modulus_pa": 1e6},
@@ -22,30 +24,33 @@ JOB = {
 }
 
 
-def sweep_seconds(rodsweep, mpirun, ranks):
-    """Wall time of the whole command, including the start of MPI and the file."""
+def sweep_seconds(rodsweep, mpirun, workers):
     begin = time.monotonic()
-    subprocess.run([mpirun, "-n", str(ranks), rodsweep, "run", "scaling.json", "-o", f"{ranks}.h5"], check=True,
-                   stdin=subprocess.DEVNULL, capture_output=True)
+    subprocess.run([mpirun, "-n", str(workers + 1), rodsweep, "run", "scaling.json", "-o", "x.h5"],
+                   check=True, stdin=subprocess.DEVNULL, capture_output=True)
     seconds = time.monotonic() - begin
-    os.remove(f"{ranks}.h5")
+    os.remove("x.h5")
     return seconds
 
 
 def main():
     rodsweep, mpirun = sys.argv[1:3]
     repeats = int(sys.argv[3]) if len(sys.argv) > 3 else 5
+    cores = len(os.sched_getaffinity(0))
+    samples = int(sys.argv[4]) if len(sys.argv) > 4 else 60 * cores
+    times = {workers: [] for workers in sorted({2**k for k in range(cores.bit_length())} | {cores}) if workers <= cores}
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         with open("scaling.json", "w") as file:
-            json.dump(JOB, file)
-        times = {2: [], 3: []}
+            json.dump({**JOB, "samples": samples}, file)
         for _ in range(repeats):
-            for ranks in times:
-                times[ranks].append(sweep_seconds(rodsweep, mpirun, ranks))
-    one, two = (statistics.median(times[ranks]) for ranks in (2, 3))
-    print(f"scaling: {one:.2f} s with one worker, {two:.2f} s with two, medians of {repeats}: "
-          f"{one / two:.2f} times as fast (target 1.8)")
+            for workers, seconds in times.items():
+                seconds.append(sweep_seconds(rodsweep, mpirun, workers))
+    print(f"scaling, {3 * samples} tasks, medians of {repeats}:")
+    one = statistics.median(times[1])
+    for workers, seconds in times.items():
+        here = statistics.median(seconds)
+        print(f"{workers:5} workers {here:8.2f} s, {one / here:5.2f} times as fast")
 
 
 if __name__ == "__main__":
