@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 JOBS = os.path.join(os.path.dirname(__file__), "../../jobs/networks")
 ITS_OWN = None    # the value of the training job itself
+SOME_FAILED = 3    # the program's exit code for a complete data set that lacks the simulations that failed
 
 RODS = {
     "factors_16": {},
@@ -170,9 +171,10 @@ def run(program, folder, job):
     with open(path + ".log", "a", encoding="utf-8") as log:
         code = subprocess.run([program, "run", path + ".json", "-o", path + ".h5", "--resume"], check=False, stdout=log,
                               stderr=log, stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"}).returncode
-    print(f"  {job['name']}: " + (f"{time.monotonic() - began:.0f} s" if code == 0 else f"exit code {code}, see {path}.log"),
+    complete = code in (0, SOME_FAILED)
+    print(f"  {job['name']}: " + (f"{time.monotonic() - began:.0f} s" if complete else f"exit code {code}, see {path}.log"),
           flush=True)
-    return code == 0
+    return complete
 
 
 def main():
