@@ -45,7 +45,7 @@ help:
 	@echo 'make archive       results of make score and make studies, models and tables, with checksums: results/archive.tar'
 	@echo 'make benchmark-data   linear systems for those who try guesses elsewhere, results/benchmark (ten minutes)'
 	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
-	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (an hour and a half; likewise)'
+	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (an hour; likewise)'
 	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind, curves), draw their films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow tests: physics, faults, the report in a browser; unit tests under the sanitizers'

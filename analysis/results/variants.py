@@ -42,12 +42,12 @@ LATTICES = {
     "all_64": {"network.latent": 64},
     "all_32_none": {"network.base": "none"},
     "all_32_subspace": {"network.base": "subspace", "network.base_size": 10},
-    "all_32_rate_4e-3": {"training.rate": 4e-3},
-    "all_32_rate_16e-3": {"training.rate": 16e-3},
+    "all_32_rate_2e-3": {"training.rate": 2e-3},
+    "all_32_rate_8e-3": {"training.rate": 8e-3},
     "all_32_two_corrections": {"training.cg_steps": 2},
     "all_32_energy": {"training.loss": "energy"},
     "tree_32": {"network.couplings": "tree", "training.loss": "energy"},
-    "all_32_seed_2": {"seed": 2},
+    "all_32_seed_1": {"seed": 1},
     "all_32_seed_3": {"seed": 3},
     "all_32_100_steps": {"data": "100_steps", "training.epochs": 26},    # as many steps of the optimiser as lattices.h5
 }
@@ -185,6 +185,9 @@ def main():
     data = dict.fromkeys(changes["data"] for changes in family.variants.values() if DATA.get(changes.get("data")))
     sets = [changed(family.data, "set_" + which, DATA[which]) for which in data]
     trainings = [training(family, variant) for variant in family.variants]
+    meant = {json.dumps({**job, "name": "", "description": ""}): job["name"] for job in trainings}
+    if len(meant) < len(trainings):
+        sys.exit(f"{name}: some variants are the same training: only {', '.join(meant.values())} differ")
     print(f"{name}: {len(trainings)} trainings", flush=True)
     for jobs in (sets, trainings):
         with ThreadPoolExecutor(os.cpu_count()) as cores:

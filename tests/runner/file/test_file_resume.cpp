@@ -92,6 +92,18 @@ TEST_CASE("a complete task is never written again") {
   CHECK(untouched);
 }
 
+TEST_CASE("a file of a program that did not store the time left is continued") {
+  const FullFile made(2);
+  H5Ldelete(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/left_s", H5P_DEFAULT);
+  ResultsFile file = resume(made.path, made.plan);
+  file.beat(10.0);
+  file.end_run("2025-01-01T00:00:00Z", 4);
+  file.close();
+  const FileSummary summary = inspect(made.path);
+  CHECK(summary.runs.at(1).end_utc == "2025-01-01T00:00:00Z");
+  CHECK(std::isnan(summary.runs.at(1).left_s));
+}
+
 TEST_CASE("resuming a complete file changes none of its bytes, so jobs that read it still know it") {
   const TemporaryFolder folder;
   const Plan plan = plan_of(full_job());
