@@ -1,8 +1,8 @@
 // Provenance of a file: host, command, versions. Works without MPI_Init and PetscInitialize.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 
 namespace rodsweep {
@@ -19,9 +19,9 @@ struct Provenance {
 /// One run of the program on a sweep: a row of /runs.
 struct RunRow {
   Provenance provenance;
-  std::string end_utc;                                       ///< empty: still running, or killed
-  int exit_code = -1;                                        ///< -1: still running, or killed
-  double left_s = std::numeric_limits<double>::quiet_NaN();  ///< at the last heartbeat; NaN: unknown
+  std::string end_utc;      ///< empty: still running, or killed
+  int exit_code = -1;       ///< -1: still running, or killed
+  double left_s = NAN;      ///< at the last heartbeat; NaN: unknown
   std::string source;       ///< the extended or merged file that had this run; empty: a run of this file
   std::int64_t tasks = 0;   ///< tasks that this run completed (inspect())
   double task_seconds = 0;  ///< sum of their wall times (inspect())
