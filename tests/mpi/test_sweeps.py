@@ -152,8 +152,8 @@ class Killers(SweepCase):
                 self.assertEqual(starts[killer], attempt + 1)
                 accused.append(np.flatnonzero(starts))
                 done.append(int(file["/tasks/state"][:].sum()))
-        self.assertLess(done[0], killer // 2)     # first, while nothing is known of it,
-        self.assertGreater(done[1], killer // 2)  # then last, perhaps beside the last of the others,
+        self.assertLess(done[0], done[1])         # first, while nothing is known of it (it may die late),
+        self.assertGreater(done[1], killer - 10)  # then last, perhaps beside the last of the others,
         self.assertEqual(list(accused[2]), [killer])  # then alone: no other incomplete task has lost a worker
 
         last = self.rodsweep(3, "run", path, "-o", "killer.h5", "--resume", code=TASKS_FAILED)
