@@ -198,11 +198,12 @@ class Watching(SweepCase):
         self.assertIn(len(now["running"]), (1, 2))
         self.assertEqual({r["host"] for r in now["running"]}, {os.uname().nodename})
         self.assertLessEqual({r["rank"] for r in now["running"]}, {1, 2})
-        self.assertRegex(rodsweep(0, "status", "watched.h5").stdout,
-                         r"tasks/s.*\n  task \d+ .*, rank [12]\n(.*\n)?run 0: .* \S+ m?s ago\n$")
 
         watch = start(0, "status", "watched.h5", "--watch", "0.2")
-        self.assertTrue(any(" left" in line for line in watch.stdout))
+        self.assertTrue(any(" left" in line for line in watch.stdout))    # from the first heartbeat after a task
+        self.assertRegex(rodsweep(0, "status", "watched.h5").stdout,
+                         r"tasks/s, .* left\n  task \d+ .*, rank [12]\n(.*\n)?run 0: .* \S+ m?s ago\n$")
+        self.assertGreater(status("watched.h5")["left_s"], 0)
         kill_all(process)
         process.communicate(timeout=600)
         rest, _ = watch.communicate(timeout=600)  # ends by itself
