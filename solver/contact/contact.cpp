@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "solver/contact/rebound.hpp"
+
 namespace rodsweep {
 namespace {
 
@@ -41,11 +43,12 @@ Vector3 direction(const Vector3& separation, const CapsuleAxis& a, const Capsule
 
 }  // namespace
 
-ContactFinder::ContactFinder(const Scene& scene, const ContactSettings& settings)
+ContactFinder::ContactFinder(const Scene& scene, const ContactSettings& settings, bool two_steps)
     : bodies_(scene),
       broad_phase_(margins(bodies_), [this](int a, int b) { return bodies_.matter(a, b); }),
       recovery_(settings.recovery),
-      restitution_(settings.restitution) {
+      restitution_(settings.restitution),
+      two_steps_(two_steps) {
   for (const Obstacle& obstacle : scene.obstacles)
     if (const auto* half_space = std::get_if<HalfSpace>(&obstacle)) {
       if (!half_space->point_m.allFinite() || !(half_space->normal.norm() > 0) || !half_space->normal.allFinite())
@@ -84,7 +87,7 @@ bool ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
     }
   }
   keep_impulses(contacts);
-  if (restitution_ > 0) let_rebound();
+  if (restitution_ > 0) let_rebound(scene);
   std::swap(found_, contacts);
   found_.reserve(contacts.capacity());  // both lists have room, so that a later step need not allocate
   return true;
@@ -99,12 +102,18 @@ void ContactFinder::keep_impulses(const std::vector<Contact>& last) {
   }
 }
 
-void ContactFinder::let_rebound() {
+void ContactFinder::let_rebound(const Scene& scene) {
+  bodies_.coast(scene, start_, end_s_, end_s_ - start_s_, coasting_);
   for (Contact& contact : found_) {
     if (!contact.impulse.isZero(0)) continue;
-    const double nearer = approach(contact, free_);
-    Contact at_start = contact;
-    if (nearer > 0) contact.allowed = follow(at_start, start_, start_s_).width + restitution_ * nearer;
+    Contact at_start = contact, coasting = contact, free = contact;
+    const double end = follow(free, free_, end_s_).width;
+    if (end >= 0) continue;
+    const double start = follow(at_start, start_, start_s_).width;
+    const double coasted = follow(coasting, coasting_, end_s_).width;
+    const Impact impact{true, std::max(0.0, start), coasted - end};
+    if (rebound(restitution_, start - coasted, impact.gap, impact.acceleration, two_steps_) > 0)
+      contact.impact = impact;
   }
 }
 
@@ -177,20 +186,15 @@ void ContactFinder::add(Contact contact, bool sided) {
   found_.push_back(contact);
 }
 
-double ContactFinder::approach(Contact contact, const std::vector<CapsuleAxis>& axes) const {
+bool ContactFinder::closes(Contact contact, const std::vector<CapsuleAxis>& axes) const {
   const double end = follow(contact, axes, end_s_).width;
-  if (end >= 0) return 0;
+  if (end >= 0) return false;
   const double nearer = follow(contact, start_, start_s_).width - end;
-  return nearer > least_impact * bodies_.smaller_radius(contact.a, contact.b) ? nearer : 0;
+  return nearer > (restitution_ > 0 ? 0 : least_impact * bodies_.smaller_radius(contact.a, contact.b));
 }
 
-bool ContactFinder::closes(const Contact& contact, const std::vector<CapsuleAxis>& axes) const {
-  return approach(contact, axes) > 0;
-}
-
-Vector3 ContactFinder::motion(int obstacle) const {
-  return (end_s_ - start_s_) *
-         (obstacle < 0 ? planes_[static_cast<std::size_t>(-1 - obstacle)].velocity : bodies_.velocity(obstacle));
+const Vector3& ContactFinder::velocity(int obstacle) const {
+  return obstacle < 0 ? planes_[static_cast<std::size_t>(-1 - obstacle)].velocity : bodies_.velocity(obstacle);
 }
 
 Gap ContactFinder::follow(Contact& contact, const std::vector<CapsuleAxis>& axes, double time_s) const {
@@ -200,7 +204,8 @@ Gap ContactFinder::follow(Contact& contact, const std::vector<CapsuleAxis>& axes
     const Plane& plane = planes_[static_cast<std::size_t>(-1 - contact.b)];
     const Vector3 end = a.at(contact.s);
     const double width = plane.height(end, time_s) - radius;
-    return {width, end - (radius + width / 2) * plane.normal};
+    const Vector3 surface = end - radius * plane.normal;
+    return {width, surface, surface - width * plane.normal};
   }
   const CapsuleAxis& b = axes[static_cast<std::size_t>(contact.b)];
   const double other_radius = bodies_.body(contact.b).radius;
@@ -211,8 +216,8 @@ Gap ContactFinder::follow(Contact& contact, const std::vector<CapsuleAxis>& axes
   const double distance = between.norm();
   if (distance > 1e-9 * (radius + other_radius) && contact.normal.dot(between) >= 0)
     contact.normal = between / distance;
-  const Vector3 surface_a = on_a - radius * contact.normal, surface_b = on_b + other_radius * contact.normal;
-  return {contact.normal.dot(between) - radius - other_radius, (surface_a + surface_b) / 2};
+  return {contact.normal.dot(between) - radius - other_radius, on_a - radius * contact.normal,
+          on_b + other_radius * contact.normal};
 }
 
 }  // namespace rodsweep

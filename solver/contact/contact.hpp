@@ -15,10 +15,8 @@
 // others have one, at their closest points. A penetration at p is allowed, except for a share that is corrected
 // (ContactSettings::recovery), at most a hundredth of a radius per step: correcting positions adds a velocity.
 //
-// With a coefficient of restitution e, a contact whose gap g would close by p* has an impact in this step (Moreau 1988;
-// Jean 1999): g(end) >= g(p) + e (g(p) - g(p*)), so that the velocity of separation is at least e times that of the
-// approach. Slow approaches, of less than a hundredth of a radius in the step, have none, nor have contacts that pressed
-// in the last step: bodies come to rest.
+// With a coefficient of restitution e, a contact whose gap would close by p* has an impact in this step, unless it pressed
+// in the last one: instead of the gap, the velocity at which the bodies separate has a lower limit (rebound.hpp).
 #pragma once
 
 #include <vector>
@@ -26,6 +24,14 @@
 #include "solver/contact/contact_bodies.hpp"
 
 namespace rodsweep {
+
+/// Of an impact with restitution, see rebound.hpp [m].
+struct Impact {
+  bool happens = false;
+  double gap = 0, acceleration = 0;
+  double meeting = 0;  ///< how much nearer they come without impulses, with the response of the joints
+  double limit = 0;    ///< of the rebound in this Newton iteration
+};
 
 struct Contact {
   enum class Place { closest, low, high };  ///< on a's axis: closest to b, or at a lower or higher s
@@ -35,19 +41,20 @@ struct Contact {
   Place place;
   double s;                  ///< on a's axis, unless closest
   Vector3 normal;            ///< n
-  double allowed = 0;        ///< lower limit of the gap |x_a - x_b| - R; above 0 only in an impact [m]
+  double allowed = 0;        ///< lower limit of the gap |x_a - x_b| - R, without an impact [m]
   Vector3 impulse{0, 0, 0};  ///< on a, in this step so far, starting from the last step's (contact_motion.hpp) [kg m]
+  Impact impact{};
 };
 
 /// The gap of a contact where its capsules are nearest, along its normal, which follows() updates.
 struct Gap {
-  double width;    ///< [m]; negative where they overlap
-  Vector3 middle;  ///< of the gap
+  double width;        ///< [m]; negative where they overlap
+  Vector3 on_a, on_b;  ///< points of the surfaces
 };
 
 class ContactFinder {
  public:
-  ContactFinder(const Scene& scene, const ContactSettings& settings);
+  ContactFinder(const Scene& scene, const ContactSettings& settings, bool two_steps = false);
   ContactFinder(const ContactFinder&) = delete;  // broad_phase_ refers to this
   ContactFinder& operator=(const ContactFinder&) = delete;
 
@@ -71,11 +78,13 @@ class ContactFinder {
   Gap follow(Contact& contact, const std::vector<CapsuleAxis>& axes) const { return follow(contact, axes, end_s_); }
   const std::vector<CapsuleAxis>& start() const { return start_; }
 
-  /// Whether the bodies touch with these axes and have come nearer by more than a hundredth of the smaller radius.
-  bool closes(const Contact& contact, const std::vector<CapsuleAxis>& axes) const;
+  /// Whether the bodies touch with these axes and have come nearer, without restitution by more than a hundredth of the
+  /// smaller radius.
+  bool closes(Contact contact, const std::vector<CapsuleAxis>& axes) const;
 
-  /// The motion of an obstacle in the step; half-space i is obstacle -1 - i.
-  Vector3 motion(int obstacle) const;
+  /// Half-space i is obstacle -1 - i.
+  bool is_obstacle(int body) const { return body < 0 || bodies_.body(body).rod < 0; }
+  const Vector3& velocity(int obstacle) const;  ///< [m/s]
 
  private:
   void find_pair(int a, int b, const Vector3* side);
@@ -83,10 +92,8 @@ class ContactFinder {
   bool nearer_beyond(int body, int other, double s, const Vector3& away, double time) const;
   void add(Contact contact, bool sided);
   void keep_impulses(const std::vector<Contact>& last);
-  void let_rebound();
+  void let_rebound(const Scene& scene);
   Gap follow(Contact& contact, const std::vector<CapsuleAxis>& axes, double time_s) const;
-  /// How much nearer the bodies of an impact come between p and these axes; 0 if there is none [m].
-  double approach(Contact contact, const std::vector<CapsuleAxis>& axes) const;
 
   struct Plane {
     Vector3 point, normal, velocity;
@@ -96,8 +103,10 @@ class ContactFinder {
   std::vector<Plane> planes_;
   BroadPhase broad_phase_;
   double recovery_, restitution_;
+  bool two_steps_;
   double start_s_ = 0, end_s_ = 0;         ///< of the step
   std::vector<CapsuleAxis> start_, free_;  ///< at p and p*
+  std::vector<CapsuleAxis> coasting_;      ///< at the end of the step without its forces
   std::vector<double> reach_;              ///< per body: distance from its axis at which contacts begin [m]
   std::vector<Box> boxes_;
   std::vector<Contact> found_;

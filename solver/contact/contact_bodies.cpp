@@ -177,4 +177,17 @@ void ContactBodies::place(const Scene& scene, double time_s, std::vector<Capsule
     *out++ = {obstacle.at_time_0.centre + time_s * obstacle.velocity, obstacle.at_time_0.half};
 }
 
+void ContactBodies::coast(const Scene& scene, const std::vector<CapsuleAxis>& start, double time_s, double dt,
+                          std::vector<CapsuleAxis>& axes) const {
+  axes = start;
+  std::size_t i = 0;
+  for (const Rod& rod : scene.rods)
+    for (std::size_t s = 0; s < rod.segments.size(); ++s, ++i) {
+      axes[i].centre += dt * rod.velocity[s];
+      const Vector3 half = start[i].half + dt * rod.angular_velocity[s].cross(start[i].half);
+      if (!half.isZero(0)) axes[i].half = bodies_[i].half_length / half.norm() * half;
+    }
+  for (const Moving& obstacle : obstacles_) axes[i++].centre = obstacle.at_time_0.centre + time_s * obstacle.velocity;
+}
+
 }  // namespace rodsweep

@@ -52,6 +52,10 @@ class ContactBodies {
   void place(const Scene& scene, double time_s, std::vector<CapsuleAxis>& axes) const;
   void place(const Scene& scene, std::vector<CapsuleAxis>& axes) const { place(scene, scene.time_s, axes); }
 
+  /// Axes after dt with the scene's velocities, from `start`, with obstacles at `time_s`.
+  void coast(const Scene& scene, const std::vector<CapsuleAxis>& start, double time_s, double dt,
+             std::vector<CapsuleAxis>& axes) const;
+
   /// Velocity of an obstacle [m/s].
   const Vector3& velocity(int obstacle) const {
     return obstacles_[static_cast<std::size_t>(obstacle) - (bodies_.size() - obstacles_.size())].velocity;

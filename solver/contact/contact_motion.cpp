@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "solver/numbers/rotation.hpp"
 
@@ -14,10 +15,28 @@ namespace {
 /// beyond any buckling load, and fling them away in the next step. Sweeps over free segments find first how a rod bends.
 int most_touched(const Rod& rod) { return can_be_condensed(rod) ? 160 : 0; }
 
-void move_in_world(Rod& rod, std::size_t segment, const Lane8& motion) {
+/// |h w| = 2 tan(angle / 2) up to which contacts turn a segment in a step, 152 degrees: there friction slides on. Joints
+/// that close near half a turn could reverse the spin.
+constexpr double most_turned = 8;
+
+/// q after an impulse: its part about the axis of the turn h w from q^ adds to h w, so that the spin gets what the impulse
+/// has. The rest turns the segment further, as it moves the surface.
+Quaternion turned(const Quaternion& q, const Quaternion& past, const Vector3& dtheta) {
+  const Vector3 turn = rotation(q, past);
+  const double size = turn.norm(), most = std::max(most_turned, size);
+  const Vector3 axis = size > 0 ? Vector3(turn / size) : Vector3::Zero();
+  const double about = axis.dot(dtheta);
+  const Quaternion out = rotated(rotated(past, std::clamp(size + about, -most, most) * axis), dtheta - about * axis);
+  const Vector3 total = rotation(out, past);
+  const double all = total.norm();
+  return all > most ? rotated(past, most / all * total) : out;
+}
+
+void move_in_world(Rod& rod, const PastPoses& past, std::size_t segment, const Lane8& motion) {
   if (rod.segments[segment].is_static) return;
   rod.position[segment] += Vector3(motion[0], motion[1], motion[2]);
-  rod.orientation[segment] = rotated(rod.orientation[segment], Vector3(motion[3], motion[4], motion[5]));
+  rod.orientation[segment] =
+      turned(rod.orientation[segment], past.orientation[segment], Vector3(motion[3], motion[4], motion[5]));
 }
 
 /// I^-1 m of an axisymmetric segment.
@@ -56,7 +75,8 @@ ContactMotion::ContactMotion(Scene& scene, const ContactBodies& bodies)
       wrench_(static_cast<std::size_t>(bodies.count()), Lane8{}) {
   int first_body = 0;
   for (const Rod& rod : scene.rods) {
-    rods_.push_back({first_body, 1, {}, DelassusOperator(rod.segment_count(), most_touched(rod))});
+    rods_.push_back(
+        {first_body, {rod.position, rod.orientation}, 1, {}, DelassusOperator(rod.segment_count(), most_touched(rod))});
     first_body += rod.segment_count();
   }
 }
@@ -157,6 +177,29 @@ void ContactMotion::push(const BodyPoint& at, const Vector3& impulse) {
   }
 }
 
+Vector3 ContactMotion::velocity(const BodyPoint& at) const {
+  const Coupled& rod = coupled(at.body);
+  const auto s = static_cast<std::size_t>(bodies_.body(at.body).segment);
+  const Rod& now = scene_.rods[static_cast<std::size_t>(bodies_.body(at.body).rod)];
+  const Vector3 turn = rotation(now.orientation[s], rod.past.orientation[s]);
+  return (now.position[s] - rod.past.position[s] + turn.cross(at.arm)) / rod.past.h;
+}
+
+Vector3 ContactMotion::velocity_before(const BodyPoint& at) const {
+  const auto s = static_cast<std::size_t>(bodies_.body(at.body).segment);
+  const Rod& rod = scene_.rods[static_cast<std::size_t>(bodies_.body(at.body).rod)];
+  return rod.velocity[s] + rod.angular_velocity[s].cross(at.arm);
+}
+
+// The balance measures a turn from q*. About one axis, tan(x - y) = (tan x - tan y) / (1 + tan x tan y).
+Vector3 ContactMotion::turning(int segment, const Vector3& moment) const {
+  const auto s = static_cast<std::size_t>(bodies_.body(segment).segment);
+  const Rod& now = scene_.rods[static_cast<std::size_t>(bodies_.body(segment).rod)];
+  const Quaternion& past = coupled(segment).past.orientation[s];
+  const Vector3 turn = rotation(now.orientation[s], past), free = rotation(now.free_orientation[s], past);
+  return moment - turn * (free.dot(moment) / (4 + free.dot(turn)));
+}
+
 Vector3 ContactMotion::of(const BodyPoint& at) const {
   if (at.body < 0) return Vector3::Zero();
   return at_point(motion_[static_cast<std::size_t>(at.body)], at.arm);
@@ -201,7 +244,7 @@ void ContactMotion::apply(bool keeps_balance) {
     const auto move = [&] {
       for (int s = 0; s < rod.segment_count(); ++s) {
         const auto body = static_cast<std::size_t>(coupled.first_body + s);
-        move_in_world(rod, static_cast<std::size_t>(s), settled_[body]);
+        move_in_world(rod, coupled.past, static_cast<std::size_t>(s), settled_[body]);
         motion_[body] = settled_[body] = Lane8{};
       }
     };

@@ -6,6 +6,10 @@
 // they will, in others as if they were free. At the end every segment moves once, x += dx, q <- rotated(q, dtheta), and
 // lambda += dlambda. Obstacles and static segments do not move.
 //
+// Impulses change velocities, which a step measures from poses x^, q^ (free_flight.hpp): h v = x - x^, h w =
+// rotation(q, q^). So a contact slips with h (v + w x arm), and a segment turns to q = rotated(q^, h w + dtheta + ...)
+// (turned()): friction acts on the spin itself, also if a thin segment turns by radians in a step.
+//
 // The response of a rod with a Delassus operator is assembled once in a step, unless its segments turn
 // (RodResponse::is_stale): the next Newton iteration sees where the bodies are. Others are assembled in each iteration.
 #pragma once
@@ -24,6 +28,13 @@ struct BodyPoint {
   Vector3 arm;
 };
 
+/// Of a rod's segments: velocities at the end of the step are the motion from here over h.
+struct PastPoses {
+  std::vector<Vector3> position;
+  std::vector<Quaternion> orientation;
+  double h = 0;
+};
+
 class ContactMotion {
  public:
   ContactMotion(Scene& scene, const ContactBodies& bodies);
@@ -31,6 +42,15 @@ class ContactMotion {
   /// Call in each step before the others: impulses are forces times unit_dt^2 [kg m], also between rods whose
   /// multipliers are forces times the squares of other constraint_dt.
   void start_step(double unit_dt);
+  PastPoses& past(std::size_t rod) { return rods_[rod].past; }
+  /// h of the rod of a segment.
+  double h(int segment) const { return coupled(segment).past.h; }
+  /// The velocity of a segment's material at a point, in its present pose [m/s].
+  Vector3 velocity(const BodyPoint& at) const;
+  Vector3 velocity_before(const BodyPoint& at) const;  ///< at the start of the step
+  /// The part of an impulse's moment that turns a segment in the balance of momentum as turned() does.
+  Vector3 turning(int segment, const Vector3& moment) const;
+
   /// What a rod gets of an impulse.
   double share(int rod) const { return rods_[static_cast<std::size_t>(rod)].share; }
 
@@ -72,6 +92,7 @@ class ContactMotion {
  private:
   struct Coupled {
     int first_body;
+    PastPoses past;
     double share = 1;
     std::optional<RodResponse> response{};  ///< after the first touch
     DelassusOperator delassus;
@@ -80,6 +101,7 @@ class ContactMotion {
     bool pushed = false;     ///< since the last settle()
   };
   const Segment& segment(const Body& of) const;
+  const Coupled& coupled(int segment) const { return rods_[static_cast<std::size_t>(bodies_.body(segment).rod)]; }
   Lane8 free_motion(int body, const Lane8& wrench) const;
 
   Scene& scene_;

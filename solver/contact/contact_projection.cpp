@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "solver/contact/rebound.hpp"
 #include "solver/linear/interruption.hpp"
 #include "solver/numbers/rotation.hpp"
 
@@ -28,11 +29,12 @@ void check_most(const char* what, double value, double most) {
 
 }  // namespace
 
-ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settings, double unit_dt)
+ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settings, double unit_dt, bool two_steps)
     : scene_(scene),
       settings_(settings),
       unit_dt_(unit_dt),
-      finder_(scene, settings),
+      two_steps_(two_steps),
+      finder_(scene, settings, two_steps),
       motion_(scene, finder_.bodies()) {
   check_least("friction", settings.friction, 0);
   check_least("obstacle_friction", settings.obstacle_friction.value_or(0), 0);
@@ -48,9 +50,6 @@ ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settin
 void ContactProjection::start_step(double end_s) {
   finder_.remember(scene_, end_s);
   last_ = contacts_;
-  old_.clear();
-  for (const Rod& rod : scene_.rods)
-    for (std::size_t s = 0; s < rod.segments.size(); ++s) old_.push_back({rod.position[s], rod.orientation[s]});
 }
 
 bool ContactProjection::find(bool keeps_balance) {
@@ -125,32 +124,65 @@ void ContactProjection::linearise() {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Contact& contact = contacts_[c];
     Linear& at = linear_[c];
-    const Gap gap = finder_.follow(contact, axes_);
+    const bool is_set = contact.impact.happens && !fresh_;
+    Contact followed = contact;
+    const Gap gap = finder_.follow(followed, axes_);
     at.width = gap.width;
-    at.a = {contact.a, gap.middle - axes_[static_cast<std::size_t>(contact.a)].centre};
-    at.b = {contact.b, contact.b < 0 ? gap.middle : gap.middle - axes_[static_cast<std::size_t>(contact.b)].centre};
+    if (!is_set) {
+      contact.normal = followed.normal;
+      at.a = {contact.a, gap.on_a - axes_[static_cast<std::size_t>(contact.a)].centre};
+      at.b = {contact.b, contact.b < 0 ? gap.on_b : gap.on_b - axes_[static_cast<std::size_t>(contact.b)].centre};
+    }
     at.size = finder_.bodies().smaller_radius(contact.a, contact.b);
     at.is_active = false;
+    if (contact.impact.happens && fresh_) {
+      contact.impact.meeting = -contact.normal.dot(slip(c));
+      contact.impact.limit = HUGE_VAL;
+    }
+    at.gap = contact.impact.happens ? separation_short_of_rebound(c) : gap.width - contact.allowed;
   }
 }
 
-// The motion of a's material against b's at the common point since the start of the step.
-Vector3 ContactProjection::slip(std::size_t c) const {
-  const Contact& contact = contacts_[c];
+// An impulse's work is its product with the mean of the velocities before and after the impact, at the same points and
+// along the same normal, so these stay as they are first linearised. The work must not be positive. Newton's e may give
+// energy if the impulse also moves the surfaces across (Kane 1984), so friction's work limits the rebound. What joints
+// take of a rod's vibration in the step cannot rebound either.
+double ContactProjection::separation_short_of_rebound(std::size_t c) {
+  Contact& contact = contacts_[c];
   const Linear& at = linear_[c];
-  const Vector3 point = axes_[static_cast<std::size_t>(contact.a)].centre + at.a.arm;
-  return slip(at.a, point) - (contact.b < 0 ? finder_.motion(contact.b) : slip(at.b, point));
+  const Vector3 after = slip(c), before = shared_h(at) * (velocity_before(at.a) - velocity_before(at.b));
+  const auto apart = [&, approach = -contact.normal.dot(before)](double e) {
+    return std::min(rebound(e, approach, contact.impact.gap, contact.impact.acceleration, two_steps_),
+                    e * std::max(0.0, contact.impact.meeting));
+  };
+  double& target = contact.impact.limit;
+  target = std::min(target, apart(settings_.restitution));
+  if (const double pressed = contact.normal.dot(contact.impulse); pressed > 0) {
+    const Vector3 across = contact.impulse - pressed * contact.normal;
+    target = std::clamp(apart(1) - across.dot(after + before) / pressed, 0.0, target);
+  }
+  return contact.normal.dot(after) - target;
 }
 
-// The motion of the body's material at a point since the start of the step.
-Vector3 ContactProjection::slip(const BodyPoint& at, const Vector3& point) const {
-  const Body& of = finder_.bodies().body(at.body);
-  if (of.rod < 0) return finder_.motion(at.body);
-  const Rod& rod = scene_.rods[static_cast<std::size_t>(of.rod)];
-  const auto s = static_cast<std::size_t>(of.segment);
-  const OldPose& old = old_[static_cast<std::size_t>(at.body)];
-  const Vector3 arm = rod.orientation[s].conjugate() * (point - rod.position[s]);
-  return point - (old.position + old.orientation * arm);
+// h times the velocity of a's surface against b's; the smaller h of two rods, which converges.
+Vector3 ContactProjection::slip(std::size_t c) const {
+  const Linear& at = linear_[c];
+  return shared_h(at) * (velocity(at.a) - velocity(at.b));
+}
+
+double ContactProjection::shared_h(const Linear& at) const {
+  double h = HUGE_VAL;
+  for (const int body : {at.a.body, at.b.body})
+    if (!finder_.is_obstacle(body)) h = std::min(h, motion_.h(body));
+  return h;
+}
+
+Vector3 ContactProjection::velocity(const BodyPoint& at) const {
+  return finder_.is_obstacle(at.body) ? finder_.velocity(at.body) : motion_.velocity(at);
+}
+
+Vector3 ContactProjection::velocity_before(const BodyPoint& at) const {
+  return finder_.is_obstacle(at.body) ? finder_.velocity(at.body) : motion_.velocity_before(at);
 }
 
 double ContactProjection::friction(const Contact& contact) const {
@@ -166,7 +198,7 @@ double ContactProjection::residual() {
     const Contact& contact = contacts_[c];
     const Linear& at = linear_[c];
     const Vector3 moved = motion_.of(at.a) - motion_.of(at.b);
-    const double gap = this->gap(contact, at) + contact.normal.dot(moved);
+    const double gap = at.gap + contact.normal.dot(moved);
     if (gap >= 0 && contact.impulse.isZero(0)) continue;
     const Matrix3 frame = contact_frame(contact.normal);
     const CoulombContact law(frame.transpose() * motion_.mobility(at.a, at.b) * frame, friction(contact));
@@ -191,13 +223,13 @@ bool ContactProjection::activate() {
     const Contact& contact = contacts_[c];
     Linear& at = linear_[c];
     if (at.is_active) continue;
-    const double width = gap(contact, at) + contact.normal.dot(motion_.of(at.a) - motion_.of(at.b));
-    if (contact.impulse.isZero(0) && width >= -overlap * at.size) continue;
+    const double gap = at.gap + contact.normal.dot(motion_.of(at.a) - motion_.of(at.b));
+    if (contact.impulse.isZero(0) && gap >= -overlap * at.size) continue;
     at.is_active = true;
     const Matrix3 frame = contact_frame(contact.normal);
     const Vector3 impulse = frame.transpose() * contact.impulse;
     Vector3 start = frame.transpose() * slip(c);
-    start.x() = gap(contact, at);
+    start.x() = at.gap;
     active_.push_back({c, frame, {}, at.size, start, impulse, impulse, impulse, impulse, -1, -1});
     motion_.touch(at.a.body);
     motion_.touch(at.b.body);
@@ -387,7 +419,8 @@ void ContactProjection::tell_impulses() {
     Vector6& on = scene_.rods[static_cast<std::size_t>(of.rod)].contact_impulse[static_cast<std::size_t>(of.segment)];
     const double share = motion_.share(of.rod);
     on.head<3>() += share * impulse;
-    on.tail<3>() += share * arm.cross(impulse);
+    const Vector3 moment = share * arm.cross(impulse);
+    on.tail<3>() += keeps_balance_ ? motion_.turning(body, moment) : moment;
   };
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];

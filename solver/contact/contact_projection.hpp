@@ -1,9 +1,11 @@
 // Contacts within a time step, as complementarity with Coulomb friction (coulomb_contact.hpp), solved by projected
 // Gauss-Seidel (Jean 1999) on accumulated multipliers (XPBD, Macklin et al. 2016), after the projection of the rods.
-// Gaps are relative to the allowed gap (contact.hpp), slips to the start of the step.
+// Gaps are relative to the allowed gap (contact.hpp). A slip is h times the velocity at the end of the step. In an
+// impact with restitution, the gap is h times the velocity of separation, relative to that of the rebound.
 //
-// In every Newton iteration the contacts are linearised at the current positions: normal, gap, and one common point
-// midway between the surfaces, at which equal and opposite impulses act on both segments. Contacts that carry an impulse
+// In every Newton iteration the contacts are linearised at the current positions: normal, gap, and the nearest points of
+// the two surfaces, at which equal and opposite impulses act. The points meet when the gap closes. (At a common point,
+// friction would have too short an arm while bodies overlap, and a rod on a slope would turn too little.) Contacts that carry an impulse
 // or would overlap are active, and only these are iterated, with the matrix of the motions of their points per impulse,
 //
 //   v = G lambda,   G = P H P^T   (Delassus; P: from motions of segments to those of points),
@@ -38,11 +40,14 @@ struct ContactState {
 
 class ContactProjection {
  public:
-  /// Impulses are forces times unit_dt^2 (contact_motion.hpp).
-  ContactProjection(Scene& scene, const ContactSettings& settings, double unit_dt);
+  /// Impulses are forces times unit_dt^2 (contact_motion.hpp). `two_steps`: of BDF2 (rebound.hpp).
+  ContactProjection(Scene& scene, const ContactSettings& settings, double unit_dt, bool two_steps);
 
   /// Call at p, with the time at the end of the step.
   void start_step(double end_s);
+
+  /// To be set before find().
+  PastPoses& past(std::size_t rod) { return motion_.past(rod); }
 
   /// Call at p*, or at another start of Newton's iteration: finds the contacts of the step. Returns false if p* is not
   /// finite. With `keeps_balance`, impulses of contacts that persist count in the balance of momentum from now on.
@@ -64,9 +69,10 @@ class ContactProjection {
  private:
   /// A contact at the current positions.
   struct Linear {
-    BodyPoint a, b;  ///< the common point
+    BodyPoint a, b;  ///< on the surfaces
     double width;    ///< of the gap [m]
-    double size;     ///< the smaller radius, the reference of motions
+    double gap;   ///< what must not be negative: the width over the allowed one, or a separation over the rebound [m]
+    double size;  ///< the smaller radius, the reference of motions
     bool is_active;
   };
   /// A contact that is iterated, in its frame.
@@ -103,8 +109,10 @@ class ContactProjection {
   void push(int point, const Vector3& impulse);
   void place_points();
   Vector3 slip(std::size_t contact) const;
-  Vector3 slip(const BodyPoint& at, const Vector3& point) const;
-  double gap(const Contact& contact, const Linear& at) const { return at.width - contact.allowed; }
+  Vector3 velocity(const BodyPoint& at) const;
+  Vector3 velocity_before(const BodyPoint& at) const;  ///< the step
+  double shared_h(const Linear& at) const;
+  double separation_short_of_rebound(std::size_t contact);
   double friction(const Contact& contact) const;
   double residual();
   bool activate();
@@ -123,6 +131,7 @@ class ContactProjection {
   Scene& scene_;
   ContactSettings settings_;
   double unit_dt_;
+  bool two_steps_;
   ContactFinder finder_;
   ContactMotion motion_;
   std::vector<Contact> contacts_;
@@ -132,11 +141,6 @@ class ContactProjection {
   std::vector<Linear> linear_;
   std::vector<CapsuleAxis> axes_;
   std::vector<char> hit_;  ///< impacts()
-  struct OldPose {
-    Vector3 position;
-    Quaternion orientation;
-  };
-  std::vector<OldPose> old_;  ///< of every segment at p
   std::vector<Active> active_;
   std::vector<Point> points_;
   std::vector<int> by_group_;    ///< points, sorted

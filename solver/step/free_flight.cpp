@@ -132,4 +132,11 @@ void FreeFlight::update_velocities(Rod& rod) const {
   });
 }
 
+void FreeFlight::put_past(const Rod& rod, Vector3* position, Quaternion* orientation) const {
+  visit_groups(groups_, rod, [&](const Group& group, std::size_t s, int count) {
+    store(group.past.position, position + s, count);
+    store(group.past.orientation, orientation + s, count);
+  });
+}
+
 }  // namespace rodsweep

@@ -44,6 +44,9 @@ class FreeFlight {
 
   void update_velocities(Rod& rod) const;
 
+  /// x^ and q^ of all segments, from which this step's velocities are measured.
+  void put_past(const Rod& rod, Vector3* position, Quaternion* orientation) const;
+
  private:
   struct Group {  ///< neighbours, padded with copies of the last segment
     LaneMask is_free;

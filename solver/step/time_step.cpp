@@ -38,7 +38,8 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
     rod.load_torque_nm.assign(rod.segments.size(), Vector3::Zero());
   }
   if (scene.contact)
-    contact_ = std::make_unique<ContactProjection>(scene, *scene.contact, rodsweep::constraint_dt(scene, settings.dt));
+    contact_ = std::make_unique<ContactProjection>(scene, *scene.contact, rodsweep::constraint_dt(scene, settings.dt),
+                                                   settings.integrator == Integrator::bdf2);
 }
 
 StepReport TimeStepper::step(Projection& projection) {
@@ -142,8 +143,13 @@ void TimeStepper::start() {
     for (std::size_t r = 0; r < scene_.rods.size(); ++r)
       if (hit[r]) flights_[r].start_anew(scene_.rods[r]);
   }
-  for (std::size_t r = 0; r < scene_.rods.size(); ++r)
+  for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
     scene_.rods[r].constraint_dt = constraint_dt(scene_, flights_[r].h());
+    if (!contact_) continue;
+    PastPoses& past = contact_->past(r);
+    past.h = flights_[r].h();
+    flights_[r].put_past(scene_.rods[r], past.position.data(), past.orientation.data());
+  }
 }
 
 void TimeStepper::find_loads() {

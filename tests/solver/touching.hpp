@@ -36,10 +36,22 @@ inline Scene contact_scene(std::vector<Rod> rods, double friction = 0, const Vec
   return scene;
 }
 
+/// A stiff straight rod of 20 radii along z, on the plane y = 0.
+inline Rod roller(int segments, double radius) {
+  RodParameters p;
+  p.radius_m = radius;
+  p.youngs_modulus_pa = 1e9;
+  p.torsion_modulus_pa = 4e8;
+  return straight_rod({0, radius, -10 * radius}, {0, radius, 10 * radius}, segments, p);
+}
+
 class Touching : public Simulation {
  public:
   Touching(Scene initial, double dt, int newton_iterations = 10, std::optional<double> momentum_tolerance = {})
       : Simulation(std::move(initial), StepSettings{dt, newton_iterations, 1e-9}, momentum_tolerance) {}
+  Touching(Scene initial, double dt, Integrator integrator, bool balance = false)
+      : Simulation(std::move(initial), StepSettings{dt, 10, 1e-9, integrator},
+                   balance ? std::optional(1e-8) : std::nullopt) {}
   /// Returns the deepest penetration after any step.
   double run(int steps) {
     double deepest = 0;

@@ -52,6 +52,40 @@ TEST_CASE("across a slope a capsule rolls with 2/3 g sin, and slides when fricti
         Approx(40 * dt * g * (std::sin(slope) - friction * std::cos(slope))).epsilon(5e-3));
 }
 
+TEST_CASE("a rod across a slope rolls with 2/3 g sin, however far it turns in a step, and gains no energy") {
+  const double slope = 20 * pi / 180, acceleration = g * std::sin(slope) * 2 / 3, end_s = 0.6;
+  const Vector3 gravity = g * Vector3(std::sin(slope), -std::cos(slope), 0);
+  const auto roll = [&](int segments, double radius, double step_s, Integrator integrator, bool balance) {
+    INFO(segments << " segments, radius " << radius << ", step " << step_s << ", balance " << balance << ", "
+                  << (integrator == Integrator::euler ? "Euler" : "BDF2"));
+    Scene scene = contact_scene({test::roller(segments, radius)}, 0.8, gravity);
+    scene.obstacles = {HalfSpace{}};
+    Touching t(scene, step_s, integrator, balance);
+    const double scale = segments * scene.rods[0].segments[0].mass * std::pow(acceleration * end_s, 2);
+    double slip = 0, gained = 0, energy = HUGE_VAL;
+    while (t.scene.time_s < end_s - step_s / 2) {
+      t.step();
+      const Rod& rod = t.scene.rods[0];
+      const double speed = acceleration * t.scene.time_s;
+      if (speed * step_s < 7 * radius)  // about half a turn
+        slip = std::max(
+            {slip, std::abs(rod.velocity[0].x() - speed), std::abs(rod.angular_velocity[0].z() * radius + speed)});
+      double now = test::kinetic_energy(t.scene);
+      for (int s = 0; s < segments; ++s) now -= rod.segments[s].mass * gravity.dot(rod.position[s]);
+      gained = std::max(gained, now - energy);
+      energy = now;
+    }
+    CHECK(slip < 2e-3 * acceleration * end_s);
+    CHECK(gained < 1e-4 * scale);
+  };
+  for (const Integrator integrator : {Integrator::euler, Integrator::bdf2})
+    for (const bool balance : {false, true})
+      for (const int segments : {1, 2})
+        for (const double radius : {5e-5, 1e-3, 0.01, 0.1})
+          for (const double step_s : {5e-4, 5e-3, 2e-2})
+            if (g * step_s * step_s < 4.5 * radius) roll(segments, radius, step_s, integrator, balance);
+}
+
 TEST_CASE("without friction a slope only carries") {
   const Scene scene = on_slope(0.3, 0, {0.5, 0, 0});
   CHECK(scene.rods[0].velocity[0].x() == Approx(40 * dt * g * std::sin(0.3)).epsilon(1e-6));

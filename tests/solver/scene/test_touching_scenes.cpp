@@ -147,6 +147,36 @@ TEST_CASE("falling rods heap up on the floor") {
   CHECK(top < 0.4);
 }
 
+TEST_CASE("a heap never gains energy, be its rods thin or bouncing, and stays whole") {
+  for (const Integrator integrator : {Integrator::euler, Integrator::bdf2})
+    for (const double radius_m : {1e-3, 0.02})
+      for (const double restitution : {0.0, 1.0}) {
+        FallingRods p = touching<FallingRods>(6, radius_m, 1e8);
+        p.torsion_modulus_pa = 4e7;
+        p.length_m = 0.6;
+        p.height_m = 5 * radius_m;
+        p.contact->friction = 0.3;
+        p.contact->restitution = restitution;
+        test::Touching t(build_scene(p), 0.005, integrator);
+        INFO("BDF2 " << (integrator == Integrator::bdf2) << ", radius " << radius_m << ", e " << restitution);
+        const auto energy = [&t] {
+          double sum = 0;
+          for (const Rod& rod : t.scene.rods)
+            sum += kinetic_energy(rod) + elastic_energy(rod) + gravitational_energy(rod, t.scene.gravity_m_s2);
+          return sum;
+        };
+        const double start = energy();
+        double least = start, gained = 0;
+        for (int i = 0; i < 100; ++i) {
+          t.step();
+          least = std::min(least, energy());
+          gained = std::max(gained, energy() - least);
+        }
+        CHECK(gained < 0.03 * (start - least));
+        for (const Rod& rod : t.scene.rods) CHECK(joint_gap(rod) < 1e-3);
+      }
+}
+
 TEST_CASE("a lattice that falls on its edge comes to lie on the floor, whole") {
   for (const auto cell : {Lattice::Cell::cubic, Lattice::Cell::body_centred, Lattice::Cell::octet}) {
     Lattice p = test::lattice_of(cell, 2, 2, Held::free);
