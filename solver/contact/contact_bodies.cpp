@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <queue>
 #include <string>
+#include <unordered_set>
 #include <utility>
 
 #include "solver/numbers/rotation.hpp"
@@ -13,10 +15,6 @@ namespace rodsweep {
 namespace {
 
 constexpr double half_pi = 1.57079632679489661923;
-
-/// In units of r_a + r_b: the search goes on beyond segments that are nearer at rest. In a fork of angle theta, the
-/// path between two overlapping segments may reach 1 / sin(theta) away.
-constexpr double far = 3;
 
 /// The pose of a segment while no joint is strained.
 struct RestPose {
@@ -30,6 +28,12 @@ RestPose beyond(const Joint& joint, int from, const RestPose& pose) {
   const Quaternion turned = pose.orientation * (forwards ? joint.rest() : joint.rest().conjugate());
   const Vector3 &here = forwards ? joint.arm_a : joint.arm_b, &there = forwards ? joint.arm_b : joint.arm_a;
   return {pose.centre + pose.orientation * here - turned * there, turned};
+}
+
+/// A pose in the frame of another.
+RestPose relative(const RestPose& frame, const RestPose& pose) {
+  const Quaternion back = frame.orientation.conjugate();
+  return {back * (pose.centre - frame.centre), back * pose.orientation};
 }
 
 CapsuleAxis axis(const RestPose& pose, const Segment& segment) {
@@ -96,65 +100,129 @@ void ContactBodies::add(const Obstacle& obstacle) {
     add(capsule->from_m, capsule->to_m, capsule->radius_m, capsule->velocity_m_s);
 }
 
-// Shortest paths (Dijkstra) over the joints from each segment, as long as the widest pair needs, and longer beyond
-// segments that are near at rest. Rest poses are in the frame of the segment at which the paths start.
 void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
-  struct Place {
-    int joint;
-    Vector3 arm;  ///< on the segment
-  };
-  std::vector<std::vector<Place>> joints_of(rod.segments.size());
+  Meetings meetings(rod.segments.size());
   for (int k = 0; k < rod.joint_count(); ++k) {
     const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
-    joints_of[static_cast<std::size_t>(joint.a)].push_back({k, joint.arm_a});
-    joints_of[static_cast<std::size_t>(joint.b)].push_back({k, joint.arm_b});
+    meetings[static_cast<std::size_t>(joint.a)].push_back({k, joint.arm_a});
+    meetings[static_cast<std::size_t>(joint.b)].push_back({k, joint.arm_b});
   }
+  exclude_near(rod, first_body, meetings);
+  exclude_overlapping(rod, first_body, meetings);
+  for (int s = first_body; s < first_body + rod.segment_count(); ++s) {
+    std::vector<int>& excluded = excluded_[static_cast<std::size_t>(s)];
+    std::sort(excluded.begin(), excluded.end());
+    excluded.erase(std::unique(excluded.begin(), excluded.end()), excluded.end());
+  }
+}
+
+// Shortest paths (Dijkstra) over the joints from each segment, as long as the widest pair needs.
+void ContactBodies::exclude_near(const Rod& rod, int first_body, const Meetings& meetings) {
   double widest = 0;
   for (const Segment& segment : rod.segments) widest = std::max(widest, segment.radius_m);
-
-  struct Reached {
-    double way = HUGE_VAL;
-    int from = 0;   ///< the last segment of the path
-    RestPose pose;  ///< of that segment
-  };
   using Way = std::pair<double, int>;  // length, joint
   std::priority_queue<Way, std::vector<Way>, std::greater<>> open;
-  std::vector<Reached> known(rod.joints.size());
+  std::vector<double> known(rod.joints.size(), HUGE_VAL);
   std::vector<int> reached;
   for (int start = 0; start < rod.segment_count(); ++start) {
-    const Segment& at_start = rod.segments[static_cast<std::size_t>(start)];
-    const double farthest = half_pi * (at_start.radius_m + widest);
-    const auto arrive = [&](int joint, double way, int from, const RestPose& pose) {
-      Reached& there = known[static_cast<std::size_t>(joint)];
-      if (way >= there.way) return;
-      if (there.way == HUGE_VAL) reached.push_back(joint);
-      there = {way, from, pose};
+    const double radius = rod.segments[static_cast<std::size_t>(start)].radius_m;
+    const auto arrive = [&](int joint, double way) {
+      double& shortest = known[static_cast<std::size_t>(joint)];
+      if (way >= shortest) return;
+      if (shortest == HUGE_VAL) reached.push_back(joint);
+      shortest = way;
       open.push({way, joint});
     };
-    for (const Place& place : joints_of[static_cast<std::size_t>(start)]) arrive(place.joint, 0, start, {});
-    std::vector<int>& excluded = excluded_[static_cast<std::size_t>(first_body + start)];
+    for (const Meeting& at : meetings[static_cast<std::size_t>(start)]) arrive(at.joint, 0);
     while (!open.empty()) {
       const auto [way, through] = open.top();
       open.pop();
-      const Reached here = known[static_cast<std::size_t>(through)];
-      if (way > here.way) continue;
+      if (way > known[static_cast<std::size_t>(through)]) continue;
       const Joint& joint = rod.joints[static_cast<std::size_t>(through)];
       for (const auto& [segment, arm] : {std::pair{joint.a, joint.arm_a}, std::pair{joint.b, joint.arm_b}}) {
-        const Segment& found = rod.segments[static_cast<std::size_t>(segment)];
-        const RestPose pose = segment == here.from ? here.pose : beyond(joint, here.from, here.pose);
-        const double touching = at_start.radius_m + found.radius_m;
-        const double apart = separation(axis({}, at_start), axis(pose, found)).norm();
-        if (segment > start && (way < half_pi * touching || apart < touching)) excluded.push_back(first_body + segment);
-        for (const Place& place : joints_of[static_cast<std::size_t>(segment)]) {
-          const double next = way + (place.arm - arm).norm();
-          if (next < farthest || apart < far * touching) arrive(place.joint, next, segment, pose);
+        const double touching = radius + rod.segments[static_cast<std::size_t>(segment)].radius_m;
+        if (segment > start && way < half_pi * touching)
+          excluded_[static_cast<std::size_t>(first_body + start)].push_back(first_body + segment);
+        for (const Meeting& at : meetings[static_cast<std::size_t>(segment)]) {
+          const double next = way + (at.arm - arm).norm();
+          if (next < half_pi * (radius + widest)) arrive(at.joint, next);
         }
       }
     }
-    std::sort(excluded.begin(), excluded.end());
-    excluded.erase(std::unique(excluded.begin(), excluded.end()), excluded.end());
-    for (const int joint : reached) known[static_cast<std::size_t>(joint)].way = HUGE_VAL;
+    for (const int joint : reached) known[static_cast<std::size_t>(joint)] = HUGE_VAL;
     reached.clear();
+  }
+}
+
+// From every two segments that meet in a point, outwards along both, as long as they overlap at rest.
+void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Meetings& meetings) {
+  /// Two segments, where their path arrives on each, and the rest pose of b in the frame of a.
+  struct Pair {
+    int a, b;
+    Vector3 arm_a, arm_b;
+    RestPose pose;
+  };
+  const auto segment = [&rod](int i) -> const Segment& { return rod.segments[static_cast<std::size_t>(i)]; };
+  const auto joint = [&rod](const Meeting& at) -> const Joint& {
+    return rod.joints[static_cast<std::size_t>(at.joint)];
+  };
+  const auto beside = [](const Vector3& arm, const Vector3& other, double length) {
+    return (arm - other).norm() <= 1e-9 * length;
+  };
+  std::vector<Pair> open;
+  std::unordered_set<std::uint64_t> known;
+  const auto add = [&](const Pair& pair) {
+    if (pair.a == pair.b) return;
+    const Segment &a = segment(pair.a), &b = segment(pair.b);
+    const double apart = separation(axis({}, a), axis(pair.pose, b)).norm();
+    const bool is_point = a.length_m == 0 || b.length_m == 0;  // whose branches are pairs of their own
+    if (is_point || apart >= a.radius_m + b.radius_m) return;
+    const auto [low, high] = std::minmax(pair.a, pair.b);
+    if (!known.insert(static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high)).second) return;
+    excluded_[static_cast<std::size_t>(first_body + low)].push_back(first_body + high);
+    open.push_back(pair);
+  };
+  /// The segment on the other side of a joint of `from`.
+  const auto across = [&](int from, const Meeting& at) {
+    const Joint& by = joint(at);
+    return by.a == from ? std::pair(by.b, by.arm_b) : std::pair(by.a, by.arm_a);
+  };
+  for (int s = 0; s < rod.segment_count(); ++s)
+    for (const Meeting& one : meetings[static_cast<std::size_t>(s)]) {
+      const auto [a, arm_a] = across(s, one);
+      if (s < a) add({s, a, one.arm, arm_a, beyond(joint(one), s, {})});
+      for (const Meeting& other : meetings[static_cast<std::size_t>(s)]) {
+        if (other.joint <= one.joint || !beside(one.arm, other.arm, segment(s).length_m)) continue;
+        const auto [b, arm_b] = across(s, other);
+        add({a, b, arm_a, arm_b, relative(beyond(joint(one), s, {}), beyond(joint(other), s, {}))});
+      }
+    }
+  /// Calls visit(next, its arm, its rest pose) beyond the far end of b; a point between them is passed.
+  const auto outwards = [&](int b, const Vector3& arm_b, const RestPose& pose, const auto& visit) {
+    for (const Meeting& at : meetings[static_cast<std::size_t>(b)]) {
+      if (beside(at.arm, arm_b, segment(b).length_m)) continue;
+      const auto [next, arm] = across(b, at);
+      const RestPose there = beyond(joint(at), b, pose);
+      if (segment(next).length_m > 0) {
+        visit(next, arm, there);
+        continue;
+      }
+      for (const Meeting& on : meetings[static_cast<std::size_t>(next)])
+        if (on.joint != at.joint) {
+          const auto [after, arm_after] = across(next, on);
+          visit(after, arm_after, beyond(joint(on), next, there));
+        }
+    }
+  };
+  while (!open.empty()) {
+    const Pair pair = open.back();
+    open.pop_back();
+    outwards(pair.b, pair.arm_b, pair.pose, [&](int next, const Vector3& arm, const RestPose& pose) {
+      add({pair.a, next, pair.arm_a, arm, pose});
+    });
+    outwards(pair.a, pair.arm_a, {}, [&](int next, const Vector3& arm, const RestPose& pose) {
+      add({next, pair.b, arm, pair.arm_b, relative(pose, pair.pose)});
+    });
   }
 }
 

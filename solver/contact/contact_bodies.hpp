@@ -5,8 +5,9 @@
 // Two segments of a rod can be in contact only if the path between them along the rod, from joint to joint, is at least
 // (pi / 2) (r_a + r_b): nearer ones could touch only if the rod is bent more tightly than its own radius. This
 // excludes neighbours and all segments that meet in one point. If segments are shorter than they are wide, it also
-// excludes the next neighbours, whose capsules overlap in a straight rod. Farther segments are excluded too if their
-// capsules overlap at rest, as beside a node where rods meet at a sharp angle. Two static bodies are never in contact.
+// excludes the next neighbours, whose capsules overlap in a straight rod. Where branches leave a node at a sharp angle,
+// all pairs are excluded that overlap at rest from the node on: a rod at rest is not pushed by itself. Two static bodies
+// are never in contact.
 // Throws SceneError for an invalid obstacle.
 #pragma once
 
@@ -64,7 +65,14 @@ class ContactBodies {
  private:
   void add(const Obstacle& obstacle);
   void connect(const Rod& rod, int first_body);
+  struct Meeting {
+    int joint;
+    Vector3 arm;  ///< on the segment
+  };
+  using Meetings = std::vector<std::vector<Meeting>>;  ///< of every segment of a rod
   void exclude_neighbours(const Rod& rod, int first_body);
+  void exclude_near(const Rod& rod, int first_body, const Meetings& meetings);
+  void exclude_overlapping(const Rod& rod, int first_body, const Meetings& meetings);
 
   std::vector<Body> bodies_;
   struct Moving {

@@ -126,29 +126,37 @@ int overlapping_pairs(const Scene& scene) {
   return count;
 }
 
-TEST_CASE("what overlaps beside a sharp fork where no joint is strained never touches; its tips may") {
-  for (const double angle : {0.4, 1.0, 1.5})
-    for (const double length : {0.02, 0.05, 0.17}) {
-      const double radius = 0.05;
-      const int pieces = static_cast<int>(1 / length);
-      RodParameters p;
-      p.radius_m = radius;
-      std::vector<SegmentSpec> segments{segment_at(Vector3::Zero(), Quaternion::Identity(), length, p)};
-      std::vector<JointSpec> joints;
-      for (const double side : {-0.5, 0.5}) {
-        const Quaternion turn(Eigen::AngleAxisd(side * angle, Vector3::UnitX()));
-        const Vector3 along = turn * Vector3(0, 0, length);
-        for (int i = 0; i < pieces; ++i) {
-          const int b = static_cast<int>(segments.size());
-          segments.push_back(segment_at(Vector3(0, 0, length / 2) + (i + 0.5) * along, turn, length, p));
-          joints.push_back(joint_between(segments, i == 0 ? 0 : b - 1, b, p, 1));
+TEST_CASE(
+    "what overlaps beside a fork where no joint is strained never touches, be its angle ever so sharp; its tips may") {
+  for (const bool held : {false, true})
+    for (const double angle : {0.0, 0.02, 0.1, 0.2, 0.4, 1.0, 1.5})
+      for (const double length : {0.02, 0.05, 0.17})
+        for (const double ratio : {1.0, 0.6}) {
+          const double radius = 0.05;
+          RodParameters p;
+          p.radius_m = radius;
+          std::vector<SegmentSpec> segments{segment_at(Vector3::Zero(), Quaternion::Identity(), held ? 0 : length, p)};
+          segments[0].is_static = held;
+          if (held) segments[0].radius_m = 0;
+          std::vector<JointSpec> joints;
+          std::vector<int> tips;
+          for (const double side : {-0.5, 0.5}) {
+            const double piece = side < 0 ? length : ratio * length;
+            const Quaternion turn(Eigen::AngleAxisd(side * angle, Vector3::UnitX()));
+            const Vector3 along = turn * Vector3(0, 0, piece), from(0, 0, held ? 0 : length / 2);
+            for (int i = 0; (i + 1) * piece <= 1; ++i) {
+              const int b = static_cast<int>(segments.size());
+              segments.push_back(segment_at(from + (i + 0.5) * along, turn, piece, p));
+              joints.push_back(joint_between(segments, i == 0 ? 0 : b - 1, b, p, 1));
+            }
+            tips.push_back(static_cast<int>(segments.size()) - 1);
+          }
+          Scene scene;
+          scene.rods.emplace_back(segments, joints);
+          CAPTURE(held, angle, length, ratio);
+          CHECK(overlapping_pairs(scene) == 0);
+          CHECK(ContactBodies(scene).matter(tips[0], tips[1]) == (angle > 2 * radius));
         }
-      }
-      Scene scene;
-      scene.rods.emplace_back(segments, joints);
-      CHECK(overlapping_pairs(scene) == 0);
-      CHECK(ContactBodies(scene).matter(pieces, 2 * pieces));
-    }
 }
 
 TEST_CASE("nothing in a lattice at rest touches, however thick its rods and however they are divided") {
