@@ -10,21 +10,19 @@
 namespace rodsweep {
 namespace {
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-void open_input(const InputFile& file) {
-  if (ends_with(file.key_path, "model"))
-    shared_model(file.path);
-  else if (ends_with(file.key_path, "library"))
-    Plugin(plugin_source({file.path, ""}));
-  else if (ends_with(file.key_path, "python.file"))
-    PluginInstance(plugin_source({file.path, ""}, PythonClass::guess), nullptr, 0);
-  else if (ends_with(file.key_path, "python_preconditioner.file"))
-    PluginInstance(plugin_source({file.path, ""}, PythonClass::preconditioner), nullptr, 0);
-  else if (!ends_with(file.key_path, "skeleton") && !ends_with(file.key_path, "curves"))  // the plan reads these
-    DatasetReader reader(file.path);
+void open_input(const std::filesystem::path& path, FileKind kind) {
+  switch (kind) {
+    case FileKind::any: return;
+    case FileKind::model: shared_model(path); return;
+    case FileKind::data_set: DatasetReader{path}; return;
+    case FileKind::skeleton:
+    case FileKind::curves: return;  // the plan reads these
+    case FileKind::plugin: Plugin(plugin_source({path, ""})); return;
+    case FileKind::python_guess: PluginInstance(plugin_source({path, ""}, PythonClass::guess), nullptr, 0); return;
+    case FileKind::python_preconditioner:
+      PluginInstance(plugin_source({path, ""}, PythonClass::preconditioner), nullptr, 0);
+      return;
+  }
 }
 
 }  // namespace
@@ -32,12 +30,14 @@ void open_input(const InputFile& file) {
 void check_inputs(const Job& job) {
   for (const auto& [written, file] : job.files) {
     if (file.hash.empty()) continue;
-    try {
-      open_input(file);
-    } catch (const FileError& error) {
-      throw job_error(job.path, file.key_path, error.what());
-    } catch (const PluginError& error) {
-      throw job_error(job.path, file.key_path, error.what());
+    for (const auto& [key_path, kind] : file.uses) {
+      try {
+        open_input(file.path, kind);
+      } catch (const FileError& error) {
+        throw job_error(job.path, key_path, error.what());
+      } catch (const PluginError& error) {
+        throw job_error(job.path, key_path, error.what());
+      }
     }
   }
 }

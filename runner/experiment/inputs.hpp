@@ -6,8 +6,8 @@
 
 namespace rodsweep {
 
-/// Opens each file of the job, except accepted missing ones, as a model or a data set according to its key. Throws
-/// JobError with the key and the reason.
+/// Opens each file of the job, except accepted missing ones, as each kind of file that its keys expect. Throws JobError
+/// with the key and the reason.
 void check_inputs(const Job& job);
 
 /// The plan of a sweep or data set whose input files exist, with every check that a run makes before its first task.

@@ -35,8 +35,8 @@ std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, 
 
 void read_knn_sets(const Plan& plan, MPI_Comm ranks) {
   const InputFiles& files = plan.job().files;
-  const auto is_of_knn = [](const auto& file) { return file.second.key_path.find(".knn.") != std::string::npos; };
-  if (std::none_of(files.begin(), files.end(), is_of_knn)) return;
+  const auto is_set = [](const auto& file) { return file.second.is_used_as(FileKind::data_set); };
+  if (std::none_of(files.begin(), files.end(), is_set)) return;
   std::set<Wanted> all;
   for (const Task& task : plan.tasks())
     for (const GuessSpec& guess : plan.spec(task.index).guesses)

@@ -40,7 +40,7 @@ KeyTable<guess::Regression> regression_keys() {
 KeyTable<guess::CopingNet> copingnet_keys() {
   using guess::CopingNet;
   KeyTable<CopingNet> table;
-  table.required(file_key("model", "model file of a train job"), &CopingNet::model);
+  table.required(file_key("model", FileKind::model, "model file of a train job"), &CopingNet::model);
   table.optional(
       integer_key("corrections",
                   "models with factors: number of successive corrections; each after the first costs a product with A")
@@ -64,7 +64,8 @@ KeyTable<guess::Knn> knn_keys() {
   using guess::Knn;
   KeyTable<Knn> table;
   table.optional(integer_key("k", "number of neighbours").from(1, 1000).also_called({"neighbours"}), &Knn::neighbours);
-  table.required(file_key("data", "data set: the file of a job of kind \"dataset\"").unlabelled(), &Knn::data);
+  table.required(file_key("data", FileKind::data_set, "data set: the file of a job of kind \"dataset\"").unlabelled(),
+                 &Knn::data);
   table.optional(integer_key("simulations", "number of simulations of the data set to use, from the first; 0: all")
                      .from(0, 1000000)
                      .unlabelled(),
@@ -164,7 +165,7 @@ const std::vector<Kind>& kinds() {
       kind<guess::Knn>("the solutions of the most similar systems of a data set, resampled by arc length and averaged",
                        knn_keys()),
       kind<guess::Plugin>("a guess from a shared library of yours", plugin_keys<guess::Plugin>()),
-      kind<guess::Python>("a guess from a Python file of yours", python_keys<guess::Python>()),
+      kind<guess::Python>("a guess from a Python file of yours", python_keys<guess::Python>(FileKind::python_guess)),
       kind<guess::Oracle>("the exact solution plus a random error", oracle_keys()),
       kind<guess::Guarded>("another guess, used only if its residual is small", guarded_keys()),
       kind<guess::Totals>(

@@ -34,10 +34,14 @@ std::string nearest_name(const MissingFile& file) {
 
 }  // namespace
 
+bool InputFile::is_used_as(FileKind kind) const {
+  return std::any_of(uses.begin(), uses.end(), [&](const FileUse& use) { return use.kind == kind; });
+}
+
 std::vector<MissingFile> missing_files(const Job& job) {
   std::vector<MissingFile> missing;
   for (const auto& [written, file] : job.files)
-    if (file.hash.empty()) missing.push_back({file.key_path, written, file.path});
+    if (file.hash.empty()) missing.push_back({file.uses.front().key_path, written, file.path});
   if (!is_training(job)) return missing;
   const auto& data = job.values["data"];
   const bool listed = data.is_array();
@@ -75,7 +79,7 @@ InputFile input_file(const std::filesystem::path& job, const std::string& key_pa
   };
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
-    if (missing == MissingFiles::accepted) return {key_path, path, ""};
+    if (missing == MissingFiles::accepted) return {path, "", {}};
     throw JobError(missing_file_text(job, {key_path, text, path}));
   }
   if (std::filesystem::is_directory(path, error)) refuse("is a folder");
@@ -87,13 +91,13 @@ InputFile input_file(const std::filesystem::path& job, const std::string& key_pa
   while (in.read(block.data(), block.size()) || in.gcount() > 0)
     sum.add(block.data(), static_cast<std::size_t>(in.gcount()));
   if (in.bad()) refuse(fmt::format("cannot be read: {}", std::strerror(errno ? errno : EIO)));
-  return {key_path, path, fmt::format("{:016x}", sum.value())};
+  return {path, fmt::format("{:016x}", sum.value()), {}};
 }
 
 std::string to_bytes(const InputFiles& files) {
   std::string bytes;
   for (const auto& [written, file] : files)
-    for (const std::string& text : {written, file.key_path, file.path.native(), file.hash}) bytes += text + '\0';
+    for (const std::string& text : {written, file.path.native(), file.hash}) bytes += text + '\0';
   return bytes;
 }
 
@@ -102,7 +106,7 @@ InputFiles from_bytes(const std::string& bytes) {
   for (std::size_t begin = 0, end = 0; (end = bytes.find('\0', begin)) != std::string::npos; begin = end + 1)
     texts.push_back(bytes.substr(begin, end - begin));
   InputFiles files;
-  for (std::size_t i = 0; i + 3 < texts.size(); i += 4) files[texts[i]] = {texts[i + 1], texts[i + 2], texts[i + 3]};
+  for (std::size_t i = 0; i + 2 < texts.size(); i += 3) files[texts[i]] = {texts[i + 1], texts[i + 2], {}};
   return files;
 }
 

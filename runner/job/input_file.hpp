@@ -1,5 +1,5 @@
-// An input file of a job: a model, a data set or a skeleton. Its path is relative to the job file. The hash of its
-// content is part of the tasks' identity, so a sweep cannot be resumed with a changed file.
+// An input file of a job. Its path is relative to the job file. The hash of its content is part of the tasks' identity,
+// so a sweep cannot be resumed with a changed file.
 #pragma once
 
 #include <filesystem>
@@ -9,22 +9,34 @@
 
 namespace rodsweep {
 
+/// What a file must be, as the row of its key says. Several keys may have the same file.
+enum class FileKind { any, model, data_set, skeleton, curves, plugin, python_guess, python_preconditioner };
+
+/// A key with a file.
+struct FileUse {
+  std::string key_path;
+  FileKind kind;
+};
+using FileUses = std::vector<FileUse>;  ///< the first key of each kind, in job order
+
 struct InputFile {
-  std::string key_path;        ///< the first key with this file
   std::filesystem::path path;  ///< from the current folder
-  std::string hash;            ///< of its content, sixteen hexadecimal digits
+  std::string hash;            ///< of its content, sixteen hexadecimal digits; empty if it is missing
+  FileUses uses;
+
+  bool is_used_as(FileKind kind) const;
 };
 
 /// By path as written in the job.
 using InputFiles = std::map<std::string, InputFile>;
 
-/// Serialisation for other ranks, so that they need not read whole data sets to hash them.
+/// Serialisation of paths and hashes for other ranks, so that they need not read whole data sets to hash them.
 std::string to_bytes(const InputFiles& files);
 InputFiles from_bytes(const std::string& bytes);
 
 enum class MissingFiles { refused, accepted };  ///< accepted: without a hash, for a job that is not run
 
-/// The file `text` at `key_path` of a job file. Throws JobError if it cannot be read.
+/// The file `text` at `key_path` of a job file, without uses. Throws JobError if it cannot be read.
 InputFile input_file(const std::filesystem::path& job, const std::string& key_path, const std::string& text,
                      MissingFiles missing);
 

@@ -52,7 +52,11 @@ Job parsed(std::string text, const std::filesystem::path& path, Look look) {
   Job job;
   job.values = reader.read(job_key(), parse_strict_json(text, path), "");
   reader.throw_mistakes();
-  for (const auto& [file, key_path] : reader.files()) job.files.emplace(file, look(file, key_path));
+  for (const auto& [file, uses] : reader.files()) {
+    InputFile found = look(file, uses.front().key_path);
+    found.uses = uses;
+    job.files.emplace(file, std::move(found));
+  }
   job.warnings = reader.warnings();
   job.path = path;
   job.text = std::move(text);

@@ -204,6 +204,12 @@ Json JobReader::read_number(const Key& key, const Json& value, const std::string
   return whole ? Json(static_cast<std::int64_t>(value.get<double>())) : value;
 }
 
+void JobReader::use(const std::string& file, FileKind kind, const std::string& path) {
+  FileUses& uses = files_[file];
+  if (std::none_of(uses.begin(), uses.end(), [&](const FileUse& use) { return use.kind == kind; }))
+    uses.push_back({path, kind});
+}
+
 Json JobReader::read_text(const Key& key, const Json& value, const std::string& path) {
   if (!value.is_string()) {
     refuse(key, value, path);
@@ -214,7 +220,7 @@ Json JobReader::read_text(const Key& key, const Json& value, const std::string& 
     if (static_cast<double>(text.size()) > key.high || !has_form(text, key.text))
       refuse(key, value, path);
     else if (key.text == Key::Text::path)
-      files_.emplace(text, path);
+      use(text, key.file, path);
     return value;
   }
   for (const std::string& choice : key.choices) {

@@ -22,8 +22,8 @@ class JobReader {
   /// {"grid": [...], "label"}.
   Json read(const Key& key, const Json& value, const std::string& path);
 
-  /// The job's input files, each with the first key path that contains it.
-  const std::map<std::string, std::string>& files() const { return files_; }
+  /// The job's input files by path as written.
+  const std::map<std::string, FileUses>& files() const { return files_; }
 
   /// One line for each value that is allowed but not plausible.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -39,6 +39,7 @@ class JobReader {
   Json read_items(const Key& item, const Json& values, const std::string& path);
   Json read_list(const Key& key, const Json& value, const std::string& path);
   Json read_number(const Key& key, const Json& value, const std::string& path);
+  void use(const std::string& file, FileKind kind, const std::string& path);
   Json read_text(const Key& key, const Json& value, const std::string& path);
   Json read_guess(const Key& key, const Json& value, const std::string& path, bool labelled);
   Json read_varying_guess(const Key& key, Json sweep, std::size_t index, const std::string& path);
@@ -60,7 +61,7 @@ class JobReader {
   Tag tag_;
   std::size_t mistakes_ = 0;
   std::vector<std::string> told_;  ///< texts of the first mistakes
-  std::map<std::string, std::string> files_;
+  std::map<std::string, FileUses> files_;
   std::vector<std::string> warnings_;
 };
 

@@ -122,7 +122,11 @@ Key boolean_key(const char* name, const char* help) { return make(Key::Kind::boo
 Key number_key(const char* name, const char* help) { return make(Key::Kind::number, name, help); }
 Key vector_key(const char* name, const char* help) { return make(Key::Kind::vector, name, help); }
 Key text_key(const char* name, const char* help) { return make(Key::Kind::text, name, help); }
-Key file_key(const char* name, const char* help) { return text_key(name, help).at_most(4095).of_form(Key::Text::path); }
+Key file_key(const char* name, FileKind kind, const char* help) {
+  Key key = text_key(name, help).at_most(4095).of_form(Key::Text::path);
+  key.file = kind;
+  return key;
+}
 Key choice_key(const char* name, const char* help, std::vector<std::string> choices) {
   Key key = make(Key::Kind::choice, name, help);
   key.choices = std::move(choices);

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "runner/job/input_file.hpp"
+
 namespace rodsweep {
 
 struct Key {
@@ -50,6 +52,7 @@ struct Key {
   std::optional<Plausible> plausible;
   std::vector<std::string> choices;
   Text text = Text::any;
+  FileKind file = FileKind::any;                             ///< of a path
   std::optional<nlohmann::ordered_json> preset;              ///< default; none: the key is required
   std::map<std::string, nlohmann::ordered_json> preset_for;  ///< other defaults, by value of the enclosing `tag`
   bool labelled = true;                                      ///< guess parameter: whether it is part of the label
@@ -95,7 +98,7 @@ Key boolean_key(const char* name, const char* help);
 Key number_key(const char* name, const char* help);
 Key vector_key(const char* name, const char* help);
 Key text_key(const char* name, const char* help);
-Key file_key(const char* name, const char* help);  ///< an input file
+Key file_key(const char* name, FileKind kind, const char* help);
 Key choice_key(const char* name, const char* help, std::vector<std::string> choices = {});
 Key variant_key(const char* name, const char* help, std::vector<Key> kinds);
 Key list_key(const char* name, const char* help, Key item);

@@ -227,7 +227,8 @@ void add_trees(Table& table) {
   table.required(length_key("spacing_m", "distance between neighbouring trees of a forest"), &Forest::spacing_m);
   table.optional(number_key("jitter", "range of the random displacement of a tree, relative to the spacing").from(0, 1),
                  &Forest::jitter);
-  table.required(file_key("skeleton", "SWC file of a tree: id, type, x, y, z, radius, parent"), &SkeletonTree::trees);
+  table.required(file_key("skeleton", FileKind::skeleton, "SWC file of a tree: id, type, x, y, z, radius, parent"),
+                 &SkeletonTree::trees);
   table.optional(length_key("skeleton_unit_m", "length unit of the skeleton file"), &SkeletonTree::unit_m);
   table.optional(choice_key("skeleton_up", "axis of the skeleton file that points up"),
                  Words<Up>{{"y", Up::y}, {"z", Up::z}}, &SkeletonTree::up);
@@ -237,8 +238,9 @@ void add_curves(Table& table) {
   const auto how = [](auto CurveCut::*member) {
     return [member](Curves & curves) -> auto& { return curves.how.*member; };
   };
-  table.required(file_key("curves", "file of lines through points: .csv, .txt, .json or .obj (docs/jobs.md)"),
-                 &Curves::curves);
+  table.required(
+      file_key("curves", FileKind::curves, "file of lines through points: .csv, .txt, .json or .obj (docs/jobs.md)"),
+      &Curves::curves);
   table.optional(length_key("curves_unit_m", "length unit of the curves' file"), &Curves::unit_m);
   table.optional(choice_key("interpolation", "between the points of a curve: straight lines, or a smooth spline"),
                  Words<Interpolation>{{"linear", Interpolation::linear}, {"spline", Interpolation::spline}},
@@ -360,7 +362,7 @@ std::vector<std::string> thick_rods(const Json& scenes, const std::filesystem::p
 std::vector<std::string> assumed_of_skeletons(const Job& job) {
   std::vector<std::string> warnings;
   for (const auto& [written, file] : job.files) {
-    if (file.hash.empty() || file.key_path.find(".skeleton") == std::string::npos) continue;
+    if (file.hash.empty() || !file.is_used_as(FileKind::skeleton)) continue;
     try {
       for (const std::string& warning : shared_skeleton(file.path, file.hash).warnings) warnings.push_back(warning);
     } catch (const SkeletonError&) {  // the plan refuses it

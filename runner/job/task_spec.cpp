@@ -90,7 +90,7 @@ KeyTable<TimeSpec> time_keys() {
 
 KeyTable<LearnedPreconditioner> learned_preconditioner_keys() {
   KeyTable<LearnedPreconditioner> table;
-  table.required(file_key("model", "model file of a train job, with the processor \"factors\""),
+  table.required(file_key("model", FileKind::model, "model file of a train job, with the processor \"factors\""),
                  &LearnedPreconditioner::model);
   return table;
 }
@@ -106,7 +106,7 @@ KeyTable<SolveSpec> solve_keys() {
           "linear systems: end_to_end: a network's increments; state_network: a network's accelerations, without "
           "constraints; xpbd, pbd: Gauss-Seidel over the joints, with and without compliances"),
       methods, &SolveSpec::method);
-  table.required(file_key("model", "model file of a train job")
+  table.required(file_key("model", FileKind::model, "model file of a train job")
                      .only({"end_to_end", "state_network"}, "for a model that starts cg use the guess \"copingnet\""),
                  &SolveSpec::model);
   table.unbound(integer_key("iterations", "maximum number of Gauss-Seidel iterations per step")
@@ -145,7 +145,7 @@ KeyTable<SolveSpec> solve_keys() {
       plugin_keys<PluginFile>(), &SolveSpec::plugin);
   table.optional(
       object_key("python_preconditioner", "the Python file of the preconditioner \"python\"").or_word("none"),
-      python_keys<PythonFile>(), &SolveSpec::python);
+      python_keys<PythonFile>(FileKind::python_preconditioner), &SolveSpec::python);
   table.optional(integer_key("fill_levels", "block_icc: levels of fill").from(0, 100), &SolveSpec::fill_levels);
   table.optional(integer_key("lag_steps",
                              "time steps between set-ups of the preconditioner, from the first Newton iteration's "

@@ -85,6 +85,25 @@ TEST_CASE("a job whose files another process has read needs none of them") {
   CHECK(Plan(told).identity(0).guesses == Plan(read).identity(0).guesses);
 }
 
+TEST_CASE("a file has a use for each kind that its keys expect, whatever surrounds them") {
+  const JobFolder folder;
+  folder.write("a b.h5", "one");
+  folder.write("c.h5", "two");
+  const Job job = folder.job(with("/guesses", R"(["zero", {"copingnet": {"model": {"grid": ["a b.h5", "c.h5"]}}},
+      {"guarded": {"guess": {"grid": [{"knn": {"data": "a b.h5"}}, {"copingnet": {"model": "c.h5"}}]},
+                   "threshold": 1}}])"));
+  const auto uses = [&](const char* written) {
+    std::vector<std::pair<std::string, FileKind>> found;
+    for (const FileUse& use : job.files.at(written).uses) found.emplace_back(use.key_path, use.kind);
+    return found;
+  };
+  CHECK(uses("a b.h5") == std::vector<std::pair<std::string, FileKind>>{
+                              {"guesses[1].copingnet.model.grid[0]", FileKind::model},
+                              {"guesses[2].guarded.guess.grid[0].knn.data", FileKind::data_set}});
+  CHECK(uses("c.h5") ==
+        std::vector<std::pair<std::string, FileKind>>{{"guesses[1].copingnet.model.grid[1]", FileKind::model}});
+}
+
 TEST_CASE("models can be swept") {
   const JobFolder folder;
   folder.write("a.h5", "one");
