@@ -99,6 +99,11 @@ Key& Key::unlabelled() {
   return *this;
 }
 
+Key& Key::on_sobol(int dimension) {
+  sobol_dimension = dimension;
+  return *this;
+}
+
 Key& Key::labelled_if_changed(const char* word) {
   labelled_as_preset = false;
   label_word = word;

@@ -68,6 +68,9 @@ struct Key {
   std::string only_advice;                                   ///< advice if the tag has another value
   std::string alternative_group;  ///< exactly one of the keys with the same group must be given
 
+  /// With "sampling" "sobol": its dimension of Sobol's sequence, of no other key, fixed for ever. None: random directions.
+  std::optional<int> sobol_dimension;
+
   std::string tag;        ///< object: the member whose value determines which `only_for` members apply
   std::vector<Key> keys;  ///< object: its members; variant: the kinds; list: the key of an item
 
@@ -88,6 +91,7 @@ struct Key {
   Key& unswept(const char* advice = "");
   Key& or_list_of_such();
   Key& unlabelled();
+  Key& on_sobol(int dimension);
   Key& labelled_if_changed(const char* word = "");  ///< "word value"
   Key& setting();                                   ///< of the whole job: neither swept nor a parameter of tasks
 };

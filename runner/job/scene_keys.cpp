@@ -81,10 +81,11 @@ void add_shapes(Table& table) {
                              "the next; in trees of the trunk and of each branch")
                      .from(1, 1000000)
                      .also_called({"n", "number_of_segments", "elements"})
+                     .on_sobol(7)
                      .otherwise("a skeleton has one segment per edge"),
                  segments, shape(&TreeShape::segments));
-  table.required(length_key("length_m", "length of the rod or of a tree's trunk").plausibly(1e-4, 1e3), length_m,
-                 shape(&TreeShape::length_m));
+  table.required(length_key("length_m", "length of the rod or of a tree's trunk").plausibly(1e-4, 1e3).on_sobol(1),
+                 length_m, shape(&TreeShape::length_m));
   table.optional(angle_key("twist_deg", "total twist of a ring before its ends are joined", -1e6, 1e6),
                  &Ring::twist_deg);
   table.optional(choice_key("rest_shape", "rest shape of a ring's rod if it is cut open"),
@@ -94,9 +95,10 @@ void add_shapes(Table& table) {
                  &Forest::rows);
   table.required(integer_key("columns", "rods of a net along z; trees in a row of a forest").from(1, 1000),
                  &Net::columns, &Forest::columns);
-  table.required(
-      length_key("mesh_m", "distance between neighbouring rods of a net; edge of a lattice cell").plausibly(1e-5, 1e2),
-      &Net::mesh_m, &Lattice::mesh_m);
+  table.required(length_key("mesh_m", "distance between neighbouring rods of a net; edge of a lattice cell")
+                     .plausibly(1e-5, 1e2)
+                     .on_sobol(9),
+                 &Net::mesh_m, &Lattice::mesh_m);
   table.optional(
       choice_key("cell",
                  "rods of a lattice: along the edges of its cells, their diagonals, or the diagonals of their faces"),
@@ -114,9 +116,11 @@ void add_shapes(Table& table) {
                      .above(0)
                      .at_most(1e9),
                  &Lattice::node_stiffness);
-  table.required(length_key("helix_radius_m", "radius of the helix").plausibly(1e-5, 1e2), &Helix::helix_radius_m);
-  table.required(length_key("helix_height_m", "height of the helix").plausibly(1e-5, 1e3), &Helix::helix_height_m);
-  table.required(number_key("windings", "turns of the helix").above(0).at_most(1e6).also_called({"turns"}),
+  table.required(length_key("helix_radius_m", "radius of the helix").plausibly(1e-5, 1e2).on_sobol(4),
+                 &Helix::helix_radius_m);
+  table.required(length_key("helix_height_m", "height of the helix").plausibly(1e-5, 1e3).on_sobol(5),
+                 &Helix::helix_height_m);
+  table.required(number_key("windings", "turns of the helix").above(0).at_most(1e6).also_called({"turns"}).on_sobol(6),
                  &Helix::windings);
 }
 
@@ -126,6 +130,7 @@ void add_rods(Table& table) {
                      .above(0)
                      .at_most(1e3)
                      .plausibly(1e-6, 10)
+                     .on_sobol(8)
                      .otherwise("a skeleton has its own radii"),
                  OwnRadius());
   table.optional(
@@ -137,14 +142,16 @@ void add_rods(Table& table) {
                      .above(0)
                      .at_most(1e6)
                      .plausibly(10, 25000, "water has 1000, steel 7850")
-                     .also_called({"rho"}),
+                     .also_called({"rho"})
+                     .on_sobol(10),
                  &Rods::density_kg_m3);
   table.required(number_key("youngs_modulus_pa", "Young's modulus, for bending")
                      .in("Pa")
                      .above(0)
                      .at_most(1e15)
                      .plausibly(1e3, 2e12, "rubber has 1e6 to 1e8, steel 2e11")
-                     .also_called({"bending_modulus_pa", "elastic_modulus_pa", "e", "y"}),
+                     .also_called({"bending_modulus_pa", "elastic_modulus_pa", "e", "y"})
+                     .on_sobol(0),
                  &Rods::youngs_modulus_pa);
   table.required(number_key("torsion_modulus_pa", "torsion modulus, for twisting and shear")
                      .in("Pa")
@@ -152,11 +159,13 @@ void add_rods(Table& table) {
                      .at_most(1e15)
                      .plausibly(1e3, 2e12, "rubber has 3e5 to 3e7, steel 8e10")
                      .also_accepted_as("shear_modulus_pa")
-                     .also_called({"g", "t"}),
+                     .also_called({"g", "t"})
+                     .on_sobol(3),
                  &Rods::torsion_modulus_pa);
   table.optional(
       angle_key("initial_angle_deg",
-                "initial angle from the horizontal; bundles: of the outermost rods from the vertical", -360, 360),
+                "initial angle from the horizontal; bundles: of the outermost rods from the vertical", -360, 360)
+          .on_sobol(2),
       &BendingRod::initial_angle_deg, &Bundle::initial_angle_deg, &Lattice::initial_angle_deg);
   table.optional(vector_key("gravity_m_s2", "acceleration of gravity")
                      .in("m/s^2")
@@ -279,8 +288,9 @@ void add_touching(Table& table) {
                  &FallingRods::turn_deg);
   table.required(number_key("feed_m_s", "downward speed of the held end of a coiling rod").in("m/s").from(0, 1e3),
                  &CoilingRod::feed_m_s);
-  table.required(number_key("pull_m_s", "speed at which each end of a knot is pulled").in("m/s").from(0, 1e3),
-                 &Knot::pull_m_s);
+  table.required(
+      number_key("pull_m_s", "speed at which each end of a knot is pulled").in("m/s").from(0, 1e3).on_sobol(11),
+      &Knot::pull_m_s);
 }
 
 /// Calls `visit(scene, path)` for each scene of a sweep of scenes.

@@ -55,17 +55,10 @@ void Point::set(std::size_t parameter, double value) {
   values_[parameter].number[0] = value;
 }
 
-SweepSpace::SweepSpace(const Json& values, const std::filesystem::path& file) : file_(file) {
+SweepSpace::SweepSpace(const Json& values, const std::filesystem::path& file)
+    : file_(file), seed_(values["seed"]), is_even_(values["sampling"] == "sobol") {
   read(job_key(), values, "", 0, root_);
   count(root_);
-  if (values["sampling"] != "sobol") return;
-  if (dimensions_.size() > SobolSequence::most_dimensions()) {
-    throw job_error(file_, "sampling",
-                    fmt::format("\"sobol\" is not allowed: this job draws {} values per sample, and the Sobol sequence "
-                                "has at most {} dimensions; use \"random\"",
-                                dimensions_.size(), SobolSequence::most_dimensions()));
-  }
-  sobol_.emplace(dimensions_.size());
 }
 
 int SweepSpace::find(const std::string& path) const {
@@ -132,14 +125,7 @@ void SweepSpace::read_sweep(const Key& key, const Json& value, const std::string
   const std::string word = value.begin().key();
   const Json& content = value.begin().value();
   if (!is_listed(word)) {
-    const std::string drawn = component == 0 ? path : element(path, static_cast<std::size_t>(component));
-    Draw draw{
-        parameter(path, key), component, Range::uniform, content[0].get<double>(), content[1].get<double>(), 0, 0};
-    if (word == "log_uniform") draw.range = Range::log_uniform;
-    if (word == "integer") draw.range = Range::integer;
-    draw.stream = random_stream(drawn);
-    draw.dimension = dimensions_.emplace(drawn, dimensions_.size()).first->second;
-    scope.draws.push_back(draw);
+    scope.draws.push_back(draw(key, value, path, component));
     return;
   }
   if (word == "grid") {
@@ -162,6 +148,22 @@ void SweepSpace::read_sweep(const Key& key, const Json& value, const std::string
                                 content.size(), scope.zip_path, length));
   }
   for (std::size_t i = 0; i < length; ++i) read(key, content[i], path, component, scope.axes[axis].options[i]);
+}
+
+SweepSpace::Draw SweepSpace::draw(const Key& key, const Json& range, const std::string& path, int component) {
+  const std::string word = range.begin().key();
+  const Json& ends = range.begin().value();
+  const std::string drawn = component == 0 ? path : element(path, static_cast<std::size_t>(component));
+  Draw draw{parameter(path, key), component, Range::uniform, ends[0].get<double>(), ends[1].get<double>(),
+            random_stream(drawn), nullptr};
+  if (word == "log_uniform") draw.range = Range::log_uniform;
+  if (word == "integer") draw.range = Range::integer;
+  if (is_even_) {
+    std::shared_ptr<const EvenSequence>& sequence = sequences_[drawn];
+    if (!sequence) sequence = std::make_shared<const EvenSequence>(key.sobol_dimension, seed_, draw.stream);
+    draw.sequence = sequence;
+  }
+  return draw;
 }
 
 void SweepSpace::count(Scope& scope) {
@@ -198,18 +200,13 @@ bool SweepSpace::can_be(const Scope& scope, int parameter, const std::string& wo
   return false;
 }
 
-void SweepSpace::fill(Point& point, std::int64_t grid_point, std::uint64_t seed, std::int64_t sample) const {
+void SweepSpace::fill(Point& point, std::int64_t grid_point, std::int64_t sample) const {
   point.space_ = this;
   point.values_.assign(parameters_.size(), Point::Value{});
-  fill(root_, point, grid_point, {seed, static_cast<std::uint64_t>(sample)});
+  fill(root_, point, grid_point, static_cast<std::uint64_t>(sample));
 }
 
-double SweepSpace::unit(const Draw& draw, const Sample& sample) const {
-  if (!sobol_) return random_unit(sample.seed, sample.number, draw.stream);
-  return sobol_->unit(draw.dimension, sample.number, random_bits(sample.seed, 0, draw.stream));
-}
-
-void SweepSpace::fill(const Scope& scope, Point& point, std::int64_t index, const Sample& sample) const {
+void SweepSpace::fill(const Scope& scope, Point& point, std::int64_t index, std::uint64_t sample) const {
   for (const Fixed& fixed : scope.fixed) {
     Point::Value& value = point.values_[static_cast<std::size_t>(fixed.parameter)];
     if (const auto* text = std::get_if<std::string>(&fixed.value)) {
@@ -222,7 +219,7 @@ void SweepSpace::fill(const Scope& scope, Point& point, std::int64_t index, cons
   }
   for (const Draw& draw : scope.draws) {
     Point::Value& value = point.values_[static_cast<std::size_t>(draw.parameter)];
-    const double u = unit(draw, sample);
+    const double u = draw.sequence ? draw.sequence->unit(sample) : random_unit(seed_, sample, draw.stream);
     double drawn = draw.low + u * (draw.high - draw.low);
     if (draw.range == Range::log_uniform) {
       drawn = std::exp(std::log(draw.low) + u * (std::log(draw.high) - std::log(draw.low)));

@@ -4,18 +4,17 @@
 //          to that value: the axis is the union of its values' spaces
 //   zip    all zips of the job (or of one grid value) form one joint axis, so they have equal lengths
 //   uniform, log_uniform, integer   no axis: drawn for each sample only from (seed, sample, key path), so that all
-//          grid points share draws. With sampling "sobol", from Sobol's sequence: one dimension per key path in job
-//          order, with a random shift from (seed, key path)
+//          grid points share draws. With sampling "sobol", from the key path's sequence in sobol.hpp
 // Axes are crossed in job order, the last varying fastest. The joint axis of the zips is at the place of the first zip.
 //
-// Throws JobError if zips differ in length, or if there are more random keys than dimensions of Sobol's sequence.
+// Throws JobError if zips differ in length.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <unordered_map>
 #include <variant>
@@ -75,7 +74,7 @@ class SweepSpace {
   /// Whether this text parameter can have the value `word`.
   bool can_be(const std::string& path, const std::string& word) const;
 
-  void fill(Point& point, std::int64_t grid_point, std::uint64_t seed, std::int64_t sample) const;
+  void fill(Point& point, std::int64_t grid_point, std::int64_t sample) const;
 
  private:
   enum class Range { uniform, log_uniform, integer };
@@ -88,10 +87,7 @@ class SweepSpace {
     Range range;
     double low, high;
     std::uint64_t stream;
-    std::size_t dimension;  ///< index among the random keys, in job order
-  };
-  struct Sample {
-    std::uint64_t seed, number;
+    std::shared_ptr<const EvenSequence> sequence;  ///< null: independent
   };
   struct Axis;
   /// The parameters outside any grid or zip, or within one value of it.
@@ -114,17 +110,18 @@ class SweepSpace {
   void read_sweep(const Key& key, const nlohmann::ordered_json& value, const std::string& path, int component,
                   Scope& scope);
   void read_guess(const nlohmann::ordered_json& value, const std::string& path, const Key& key, Scope& scope);
+  Draw draw(const Key& key, const nlohmann::ordered_json& range, const std::string& path, int component);
   int parameter(const std::string& path, const Key& key);
   static void count(Scope& scope);
   static bool can_be(const Scope& scope, int parameter, const std::string& word);
-  void fill(const Scope& scope, Point& point, std::int64_t index, const Sample& sample) const;
-  double unit(const Draw& draw, const Sample& sample) const;
+  void fill(const Scope& scope, Point& point, std::int64_t index, std::uint64_t sample) const;
 
   std::filesystem::path file_;
   std::vector<Parameter> parameters_;
   std::unordered_map<std::string, int> index_;
-  std::map<std::string, std::size_t> dimensions_;  ///< indices of the random keys, by path
-  std::optional<SobolSequence> sobol_;
+  std::uint64_t seed_;
+  bool is_even_;
+  std::map<std::string, std::shared_ptr<const EvenSequence>> sequences_;  ///< of the random keys, by path
   Scope root_;
 };
 

@@ -132,7 +132,7 @@ Plan Plan::alone(std::int64_t index, int trajectory_every) const {
 }
 
 void Plan::fill(Point& point, std::int64_t index) const {
-  space_.fill(point, index / job_.samples, job_.seed, index % job_.samples);
+  space_.fill(point, index / job_.samples, index % job_.samples);
 }
 
 TaskSpec Plan::spec(std::int64_t index) const {
