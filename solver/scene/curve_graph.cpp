@@ -5,6 +5,7 @@
 #include <boost/math/interpolators/catmull_rom.hpp>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "solver/scene/scene_parts.hpp"
 
@@ -184,6 +185,14 @@ void number_components(CurveGraph& graph) {
 }
 
 }  // namespace
+
+bool operator==(const CurveCut& a, const CurveCut& b) {
+  const auto all = [](const CurveCut& of) {
+    const auto& [interpolation, segment_m, join_m, held, held_at_m] = of;
+    return std::tie(interpolation, segment_m, join_m, held, held_at_m);
+  };
+  return all(a) == all(b);
+}
 
 CurveGraph cut(const std::vector<Curve>& curves, double radius, const CurveCut& how) {
   const double tolerance = how.join_m > 0 ? how.join_m : 1e-6 * extent(curves);

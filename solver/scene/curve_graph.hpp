@@ -51,6 +51,7 @@ struct CurveCut {
   HeldPoints held = HeldPoints::none;
   std::vector<Vector3> held_at_m;  ///< in addition
 };
+bool operator==(const CurveCut& a, const CurveCut& b);
 
 /// Throws SceneError for a point at that of the one before, a spline through less than four points, or a held point that
 /// is away from all points. `radius`: of curves without radii.

@@ -180,15 +180,27 @@ class Builder {
 
 }  // namespace
 
+std::shared_ptr<const CurveGraph> Curves::graph() const {
+  struct Last {
+    Curves of;  ///< keeps the curves, so that others have another address
+    std::shared_ptr<const CurveGraph> graph;
+  };
+  static thread_local Last last;
+  const auto what = [](const Curves& p) { return std::tie(p.curves, p.unit_m, p.radius_m, p.how); };
+  if (!last.graph || !(what(last.of) == what(*this)))
+    last = {*this, std::make_shared<const CurveGraph>(cut(in_metres(*this), radius_m, how))};
+  return last.graph;
+}
+
 void Curves::check() const {
   if (!curves) throw SceneError("curves need a file");
 }
 
 SceneSize Curves::size() const {
-  const CurveGraph graph = cut(in_metres(*this), radius_m, how);
-  check_segments("curves", static_cast<double>(graph.edges.size()));
-  SceneSize size{static_cast<int>(graph.edges.size()), 0, graph.components, "the number of unconnected curves"};
-  for (const CurveGraph::Node& node : graph.nodes) {
+  const std::shared_ptr<const CurveGraph> cut = graph();
+  check_segments("curves", static_cast<double>(cut->edges.size()));
+  SceneSize size{static_cast<int>(cut->edges.size()), 0, cut->components, "the number of unconnected curves"};
+  for (const CurveGraph::Node& node : cut->nodes) {
     const int edges = static_cast<int>(node.edges.size());
     size.segments += node.held ? 1 : 0;
     size.joints += node.held ? edges : edges - 1;
@@ -197,8 +209,8 @@ SceneSize Curves::size() const {
 }
 
 void Curves::build(Scene& scene) const {
-  const CurveGraph graph = cut(in_metres(*this), radius_m, how);
-  scene.rods = Builder(*this, graph).rods();
+  const std::shared_ptr<const CurveGraph> cut = graph();
+  scene.rods = Builder(*this, *cut).rods();
 }
 
 }  // namespace rodsweep

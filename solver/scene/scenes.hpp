@@ -238,6 +238,8 @@ struct Curves : RodParameters {  ///< radius, moduli and density: of curves with
   double unit_m = 1;  ///< unit of their points and radii
   CurveCut how;
   RestShape rest_shape = RestShape::drawn;
+  /// Kept until curves are cut otherwise: a plan asks for sizes of many equal graphs in a row.
+  std::shared_ptr<const CurveGraph> graph() const;
   void check() const;
   SceneSize size() const;
   void build(Scene& scene) const;

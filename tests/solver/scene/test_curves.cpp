@@ -51,6 +51,25 @@ double distance(const std::vector<Vector3>& one, const std::vector<Vector3>& oth
   return most;
 }
 
+TEST_CASE("equal curves are cut once, others anew") {
+  const Curves p = curves({line({{0, 0, 0}, {1, 0, 0}}), line({{1, 0, 0}, {1, 1, 0}})});
+  const auto changed = [&](const auto& change) {
+    const auto graph = p.graph();
+    Curves other = p;
+    change(other);
+    return other.graph() != graph;
+  };
+  CHECK_FALSE(changed([](Curves& c) { c.youngs_modulus_pa *= 2; }));
+  CHECK(changed([](Curves& c) { c.curves = std::make_shared<const std::vector<Curve>>(*c.curves); }));
+  CHECK(changed([](Curves& c) { c.unit_m = 2; }));
+  CHECK(changed([](Curves& c) { c.radius_m *= 2; }));
+  CHECK(changed([](Curves& c) { c.how.interpolation = Interpolation::spline; }));
+  CHECK(changed([](Curves& c) { c.how.segment_m = 0.3; }));
+  CHECK(changed([](Curves& c) { c.how.join_m = 1e-3; }));
+  CHECK(changed([](Curves& c) { c.how.held = HeldPoints::ends; }));
+  CHECK(changed([](Curves& c) { c.how.held_at_m = {{0, 0, 0}}; }));
+}
+
 TEST_CASE("a straight curve with a held end is the bending rod with a wall") {
   BendingRod rod = test::bending_rod(10, Clamp::wall);
   rod.length_m = 1;
