@@ -311,6 +311,12 @@ void visit_numbers(const Json& value, const std::string& path,
   if (const std::string word = sweep_word(value); !word.empty()) visit_numbers(value[word], member(path, word), visit);
 }
 
+/// Whether a list has an item, or a list of a sweep.
+bool has_item(const Json& list) {
+  const std::string word = sweep_word(list);
+  return word.empty() ? !list.empty() : std::any_of(list[word].begin(), list[word].end(), has_item);
+}
+
 }  // namespace
 
 const KeyTable<SceneSpec>& scene_keys() {
@@ -339,7 +345,7 @@ Key scene_key() {
 
 void check_obstacles(const Json& scenes, const std::filesystem::path& file) {
   visit_scenes(scenes, "scene", [&](const Json& scene, const std::string& path) {
-    if (scene["contact"] == "none" && !scene["obstacles"].empty())
+    if (scene["contact"] == "none" && has_item(scene["obstacles"]))
       throw job_error(file, member(path, "obstacles"),
                       "rods without \"contact\" pass through obstacles; give the scene \"contact\": "
                       "{\"friction\": 0.3}, or remove this key");
@@ -388,7 +394,7 @@ std::vector<std::string> unbalanced_loads(const Json& values, const std::filesys
   visit_scenes(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
     for (const char* load : {"tip_force_n", "tip_torque_nm", "loads"}) {
       if (scene["type"] == Lattice::name && load == std::string("tip_force_n")) continue;  // at centres of segments
-      bool is_loaded = std::string(load) == "loads" && !scene["loads"].empty();
+      bool is_loaded = std::string(load) == "loads" && has_item(scene["loads"]);
       visit_numbers(scene.value(load, Json()), "",
                     [&](double number, const std::string&) { is_loaded |= number != 0; });
       if (is_loaded)

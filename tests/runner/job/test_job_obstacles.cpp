@@ -85,6 +85,7 @@ TEST_CASE("obstacles that nothing can touch are refused, but not where contact i
       {scenes, "scene.grid[1].obstacles: ", without_contact, advice},
   });
   CHECK(refusal(with("/scene/obstacles", "[]")).empty());
+  CHECK(refusal(with("/scene/obstacles", R"({"grid": [[], {"zip": [[], []]}]})")).empty());
   CHECK(refusal(with("/scene/contact", R"({"grid": ["none", {}]})", untouched)).empty());
 }
 
