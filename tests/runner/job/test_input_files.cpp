@@ -104,16 +104,5 @@ TEST_CASE("a file has a use for each kind that its keys expect, whatever surroun
         std::vector<std::pair<std::string, FileKind>>{{"guesses[1].copingnet.model.grid[1]", FileKind::model}});
 }
 
-TEST_CASE("models can be swept") {
-  const JobFolder folder;
-  folder.write("a.h5", "one");
-  folder.write("b.h5", "two");
-  const Plan plan(folder.job(
-      with("/guesses", R"(["zero", {"copingnet": {"model": {"grid": ["a.h5", "b.h5"]}, "label": "learned"}}])")));
-  REQUIRE(plan.size() == 2);
-  CHECK(std::get<guess::CopingNet>(plan.spec(0).guesses[1].kind).model.filename() == "a.h5");
-  CHECK(std::get<guess::CopingNet>(plan.spec(1).guesses[1].kind).model.filename() == "b.h5");
-}
-
 }  // namespace test_input_files
 }  // namespace rodsweep
