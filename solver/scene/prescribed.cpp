@@ -4,8 +4,10 @@
 #include <limits>
 #include <map>
 #include <sstream>
+#include <string>
 #include <utility>
 
+#include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_parts.hpp"
 
 namespace rodsweep {
@@ -18,50 +20,84 @@ struct Place {
   double distance_m = std::numeric_limits<double>::infinity();
 };
 
-/// The place nearest to a point, among held segments or among all.
-Place nearest(const Scene& scene, const Vector3& point, bool held) {
-  Place best;
-  for (std::size_t r = 0; r < scene.rods.size(); ++r) {
-    const Rod& rod = scene.rods[r];
-    for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-      if (held && !rod.segments[s].is_static) continue;
-      const Vector3 axis = rod.orientation[s] * Vector3::UnitZ();
-      const double half = rod.segments[s].length_m / 2;
-      const double along = std::clamp(axis.dot(point - rod.position[s]), -half, half);
-      const double distance = (point - rod.position[s] - along * axis).norm();
-      if (distance < best.distance_m) best = {static_cast<int>(r), static_cast<int>(s), along, distance};
-    }
-  }
-  return best;
-}
-
 const Segment& segment(const Scene& scene, const Place& place) {
   return scene.rods[static_cast<std::size_t>(place.rod)].segments[static_cast<std::size_t>(place.segment)];
 }
 
-void check_near(const Scene& scene, const Place& place, const char* what, const Vector3& at_m) {
-  const Segment& found = segment(scene, place);
-  const double most = std::max(found.radius_m, found.length_m);
-  if (place.distance_m <= most) return;
-  std::ostringstream out;
-  out << what << " at " << text_of(at_m) << " is " << place.distance_m
-      << " m away from the nearest segment; must be at most " << most << " m away";
-  throw SceneError(out.str());
-}
+/// Finds the segments at points of a scene.
+class SegmentFinder {
+ public:
+  explicit SegmentFinder(const Scene& scene) : scene_(scene), rounding_m_(1e-6 * extent(scene)) {}
 
-void add(const PrescribedLoad& load, Scene& scene) {
-  const Place place = nearest(scene, load.at_m, false);
-  check_near(scene, place, "a load", load.at_m);
-  if (segment(scene, place).is_static)
+  /// Points that are no farther apart are one: coordinates may be rounded, or come from another unit.
+  double rounding_m() const { return rounding_m_; }
+
+  /// The segments nearest to a point, among held ones or among all: several where they meet. Throws SceneError if there
+  /// are none near it. `what`: for errors.
+  std::vector<Place> nearest(const Vector3& point, bool held, const char* what) const {
+    std::vector<Place> all;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t r = 0; r < scene_.rods.size(); ++r)
+      for (std::size_t s = 0; s < scene_.rods[r].segments.size(); ++s) {
+        const Place place = on_axis(point, r, s);
+        if ((held && !segment(scene_, place).is_static) || !(place.distance_m <= least + rounding_m_)) continue;
+        least = std::min(least, place.distance_m);
+        all.push_back(place);
+      }
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](const Place& place) { return place.distance_m > least + rounding_m_; }),
+              all.end());
+    if (all.empty()) throw SceneError(std::string(what) + " needs a held segment; this scene has none");
+    check_near(all.front(), what, point);
+    return all;
+  }
+
+ private:
+  static double extent(const Scene& scene) {
+    Eigen::AlignedBox3d box;
+    for (const Rod& rod : scene.rods)
+      for (std::size_t s = 0; s < rod.segments.size(); ++s)
+        for (const double side : {-0.5, 0.5})
+          box.extend(rod.position[s] + side * rod.segments[s].length_m * director(rod.orientation[s]));
+    return box.diagonal().norm();
+  }
+
+  Place on_axis(const Vector3& point, std::size_t r, std::size_t s) const {
+    const Rod& rod = scene_.rods[r];
+    const Vector3 axis = rod.orientation[s] * Vector3::UnitZ();
+    const double half = rod.segments[s].length_m / 2;
+    const double along = std::clamp(axis.dot(point - rod.position[s]), -half, half);
+    return {static_cast<int>(r), static_cast<int>(s), along, (point - rod.position[s] - along * axis).norm()};
+  }
+
+  void check_near(const Place& place, const char* what, const Vector3& at_m) const {
+    const Segment& found = segment(scene_, place);
+    const double most = std::max({found.radius_m, found.length_m, rounding_m_});
+    if (place.distance_m <= most) return;
+    std::ostringstream out;
+    out << what << " at " << text_of(at_m) << " is " << place.distance_m
+        << " m away from the nearest segment; must be at most " << most << " m away";
+    throw SceneError(out.str());
+  }
+
+  const Scene& scene_;
+  double rounding_m_;
+};
+
+void add(const PrescribedLoad& load, const SegmentFinder& places, Scene& scene) {
+  const std::vector<Place> found = places.nearest(load.at_m, false, "a load");
+  if (std::any_of(found.begin(), found.end(), [&](const Place& each) { return segment(scene, each).is_static; }))
     throw SceneError("a load at " + text_of(load.at_m) + " is on a held segment; must be on one that can move");
+  const Place& place = found.front();
   scene.loads.push_back(
       {place.rod, place.segment, load.force_n, load.torque_nm, Vector3(0, 0, place.along_m), load.schedule});
 }
 
-/// The poses of a held segment that motions move.
+/// The poses of a held segment that motions move: each is displaced by their sum, and turned by the sum of their
+/// rotation vectors.
 struct Moved {
   std::vector<PrescribedMotion> motions;
-  Vector3 position;
+  Vector3 about, position;
   Quaternion orientation;
 
   Pose operator()(double time_s) const {
@@ -74,29 +110,43 @@ struct Moved {
     const double angle = rotation_deg.norm() * pi / 180;
     const Quaternion turn =
         angle == 0 ? Quaternion::Identity() : Quaternion(Eigen::AngleAxisd(angle, rotation_deg.normalized()));
-    const Vector3& about = motions.front().at_m;
     return {about + displacement + turn * (position - about), (turn * orientation).normalized()};
   }
 };
 
-void add(const std::vector<PrescribedMotion>& motions, Scene& scene) {
+/// The point about which all motions of a clamp turn it: on the axis of each. Turns about different points give a pose
+/// that depends on their order, so they are refused.
+Vector3 centre_of_turns(const std::vector<PrescribedMotion>& motions, double rounding_m) {
+  const auto is_on_axis = [&](const Vector3& point, const PrescribedMotion& of) {
+    return (point - of.at_m).cross(of.rotation_deg.normalized()).norm() <= rounding_m;
+  };
+  std::string points;
+  for (const PrescribedMotion& one : motions) {
+    if (std::all_of(motions.begin(), motions.end(), [&](const auto& each) { return is_on_axis(one.at_m, each); }))
+      return one.at_m;
+    if (!one.rotation_deg.isZero(0)) points += (points.empty() ? "" : ", ") + text_of(one.at_m);
+  }
+  throw SceneError("motions of one clamp turn about different points: " + points +
+                   "; must be one point or points of one axis, because the order of such turns would matter");
+}
+
+void add(const std::vector<PrescribedMotion>& motions, const SegmentFinder& places, Scene& scene) {
   std::map<std::pair<int, int>, Moved> moved;
-  for (const PrescribedMotion& motion : motions) {
-    const Place place = nearest(scene, motion.at_m, true);
-    if (place.distance_m == std::numeric_limits<double>::infinity())
-      throw SceneError("a motion needs a held segment; this scene has none");
-    check_near(scene, place, "a motion of a clamp", motion.at_m);
-    for (const MovingClamp& clamp : scene.clamps)
-      if (clamp.rod == place.rod && clamp.segment == place.segment)
-        throw SceneError("the clamp at " + text_of(motion.at_m) + " is moved by the scene itself; must be another");
-    const Rod& rod = scene.rods[static_cast<std::size_t>(place.rod)];
-    const auto s = static_cast<std::size_t>(place.segment);
-    Moved& own = moved[{place.rod, place.segment}];
+  for (const PrescribedMotion& motion : motions)
+    for (const Place& place : places.nearest(motion.at_m, true, "a motion of a clamp")) {
+      for (const MovingClamp& clamp : scene.clamps)
+        if (clamp.rod == place.rod && clamp.segment == place.segment)
+          throw SceneError("the clamp at " + text_of(motion.at_m) + " is moved by the scene itself; must be another");
+      moved[{place.rod, place.segment}].motions.push_back(motion);
+    }
+  for (auto& [place, own] : moved) {
+    const Rod& rod = scene.rods[static_cast<std::size_t>(place.first)];
+    const auto s = static_cast<std::size_t>(place.second);
+    own.about = centre_of_turns(own.motions, places.rounding_m());
     own.position = rod.position[s];
     own.orientation = rod.orientation[s];
-    own.motions.push_back(motion);
+    scene.clamps.push_back({place.first, place.second, own});
   }
-  for (const auto& [place, poses] : moved) scene.clamps.push_back({place.first, place.second, poses});
 }
 
 }  // namespace
@@ -133,8 +183,9 @@ double Prescribed::largest_gravity_m_s2(const Vector3& constant) const {
 }
 
 void add_prescribed(const Prescribed& prescribed, Scene& scene) {
-  for (const PrescribedLoad& load : prescribed.loads) add(load, scene);
-  add(prescribed.motions, scene);
+  const SegmentFinder places(scene);
+  for (const PrescribedLoad& load : prescribed.loads) add(load, places, scene);
+  add(prescribed.motions, places, scene);
   scene.gravity_changes = prescribed.gravity;
 }
 

@@ -1,6 +1,7 @@
 // What changes a scene over time, in every scene: loads at points, motions of clamps, changes of gravity.
 //
-// A point belongs to the segment whose axis is nearest at the start, and to that point of its axis.
+// A point belongs to the segment whose axis is nearest at the start, and to that point of its axis. Where held segments
+// meet, such as at a held node of a lattice, a motion moves all of them. Of free ones that meet, the first bears a load.
 #pragma once
 
 #include <vector>
@@ -19,7 +20,7 @@ struct PrescribedLoad {
 };
 
 /// A held segment moves by a displacement, and turns about `at_m` by a rotation vector in the world, times the schedule.
-/// Those of several motions of one segment add up.
+/// Several motions of one segment add up in any order: their displacements, and their rotation vectors about one point.
 struct PrescribedMotion {
   Vector3 at_m{0, 0, 0}, displacement_m{0, 0, 0}, rotation_deg{0, 0, 0};
   Schedule schedule;
@@ -45,8 +46,9 @@ struct Prescribed {
   double largest_gravity_m_s2(const Vector3& constant) const;
 };
 
-/// Adds them, checked, to a scene with rods. Throws SceneError if a point is away from all rods, if a load is on a held segment, or
-/// a motion on one that is not held or that the scene moves itself.
+/// Adds them, checked, to a scene with rods. Throws SceneError if a point is away from all rods, if a load is on a held
+/// segment, if a motion is on one that is not held or that the scene moves itself, or if motions turn one segment about
+/// different points.
 void add_prescribed(const Prescribed& prescribed, Scene& scene);
 
 }  // namespace rodsweep

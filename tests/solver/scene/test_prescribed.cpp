@@ -79,6 +79,64 @@ TEST_CASE("a smooth motion of a clamp is the motion of a tip") {
   CHECK(test::distance(one.scene, other.scene, &Rod::position) < 1e-9);
 }
 
+/// The centre of the first segment, one metre along x from the origin and held, when these motions have ended.
+Vector3 moved_centre(const std::vector<PrescribedMotion>& motions) {
+  BendingRod rod = test::bending_rod(4);
+  rod.length_m = 4;
+  rod.initial_angle_deg = 0;
+  rod.prescribed.motions = motions;
+  return build_scene(rod).clamps.front().pose(1).position;
+}
+
+TEST_CASE("several motions of one clamp each turn about their own point, in any order") {
+  const Schedule schedule{{0, 1}, {0, 1}, false};
+  const PrescribedMotion shift{{0, 0, 0}, {0, 0.1, 0}, {0, 0, 0}, schedule},
+      turn{{1, 0, 0}, {0, 0, 0}, {0, 0, 90}, schedule}, half{{1, 0, 0}, {0, 0, 0}, {0, 0, 45}, schedule},
+      back{{0.2, 0, 0}, {0, -0.1, 0}, {0, 0, 0}, schedule};
+  const Vector3 turned(1, -0.5, 0);
+  for (const auto& [motions, expected] :
+       {std::pair(std::vector{turn}, turned), std::pair(std::vector{shift, turn}, Vector3(turned + Vector3(0, 0.1, 0))),
+        std::pair(std::vector{shift, half, back, half}, turned)}) {
+    std::vector<PrescribedMotion> reversed(motions.rbegin(), motions.rend());
+    CHECK((moved_centre(motions) - expected).norm() < 1e-12);
+    CHECK((moved_centre(reversed) - expected).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("turns of one clamp about points of one axis add up, those about different points are refused") {
+  const Schedule schedule{{0, 1}, {0, 1}, false};
+  const PrescribedMotion one{{1, 0, 0}, {0, 0, 0}, {0, 0, 90}, schedule},
+      along{{1, 0, 0.02}, {0, 0, 0}, {0, 0, 90}, schedule}, other{{0.5, 0, 0}, {0, 0, 0}, {0, 0, 90}, schedule};
+  CHECK((moved_centre({one, along}) - Vector3(1.5, 0, 0)).norm() < 1e-12);
+  for (const auto& both : {std::vector{one, other}, {other, one}})
+    CHECK_THROWS_WITH(moved_centre(both), Contains("motions of one clamp turn about different points: [") &&
+                                              Contains("must be one point or points of one axis"));
+}
+
+TEST_CASE("points of loads and motions may be rounded") {
+  Net net;  // its corners are held at points
+  net.rows = net.columns = 4;
+  const Schedule schedule{{0, 1}, {0, 1}, false};
+  const double rounded = 3 * net.mesh_m;
+  net.prescribed.motions.push_back({{rounded * (1 + 1e-8), 1e-9, 0}, {0, 0.1, 0}, {0, 0, 0}, schedule});
+  const Scene scene = build_scene(net);
+  REQUIRE(scene.clamps.size() == 1);
+  CHECK((scene.clamps[0].pose(1).position - Vector3(rounded, 0.1, 0)).norm() < 1e-12);
+  net.prescribed.motions[0].at_m.x() *= 1.001;
+  CHECK_THROWS_WITH(build_scene(net), Contains("m away from the nearest segment"));
+}
+
+TEST_CASE("a motion moves all segments that are held at its point") {
+  Lattice lattice = test::lattice_of(Lattice::Cell::octet, 2, 3, Held::side);
+  lattice.prescribed.motions.push_back({{0, 0, 0}, {0.1, 0, 0}, {0, 0, 0}, {{0, 1}, {0, 1}, false}});
+  const Scene scene = build_scene(lattice);
+  int held = 0;
+  for (std::size_t s = 0; s < scene.rods[0].segments.size(); ++s)
+    held += scene.rods[0].segments[s].is_static && scene.rods[0].position[s].norm() < 1e-9;
+  CHECK(held > 1);
+  CHECK(static_cast<int>(scene.clamps.size()) == held);
+}
+
 TEST_CASE("loads stiffen all inextensible joints of a rod alike, those of crossings too") {
   Lattice lattice = test::lattice_of(Lattice::Cell::cubic, 3);
   lattice.stretch = Stretch::inextensible;
