@@ -12,6 +12,8 @@
 namespace rodsweep {
 namespace {
 
+constexpr double default_join = 1e-6;  ///< of the extent
+
 /// A point of a curve, maybe between given ones.
 struct Sample {
   Vector3 at;
@@ -19,14 +21,21 @@ struct Sample {
   int given;  ///< index, -1 between them
 };
 
-/// Numbers points; those within a tolerance have one number.
+/// Numbers points; those within a tolerance of the first of them have one number, and meet in their middle.
 class Places {
  public:
   explicit Places(double tolerance) : tolerance_(tolerance) {}
 
   int number_of(const Vector3& point) {
-    if (const int found = find(point); found >= 0) return found;
+    if (const int found = find(point); found >= 0) {
+      const auto i = static_cast<std::size_t>(found);
+      ++count_[i];
+      offset_[i] += point - points_[i];
+      return found;
+    }
     points_.push_back(point);
+    offset_.push_back(Vector3::Zero());
+    count_.push_back(1);
     const int number = static_cast<int>(points_.size()) - 1;
     cells_[cell(point)].push_back(number);
     return number;
@@ -42,7 +51,11 @@ class Places {
               if ((points_[static_cast<std::size_t>(number)] - point).norm() <= tolerance_) return number;
     return -1;
   }
-  const std::vector<Vector3>& points() const { return points_; }
+  std::size_t count() const { return points_.size(); }
+  Vector3 middle(int number) const {
+    const auto i = static_cast<std::size_t>(number);
+    return points_[i] + offset_[i] / count_[i];
+  }
 
  private:
   using Cell = std::array<double, 3>;  // of the tolerance's size; whole numbers
@@ -51,7 +64,9 @@ class Places {
   }
 
   double tolerance_;
-  std::vector<Vector3> points_;
+  std::vector<Vector3> points_;  ///< the first ones
+  std::vector<Vector3> offset_;  ///< sum over the points of each number, from the first
+  std::vector<int> count_;
   std::map<Cell, std::vector<int>> cells_;
 };
 
@@ -102,14 +117,24 @@ std::vector<Sample> samples(const Curve& curve, double radius, Interpolation int
   return out;
 }
 
-void check(const Curve& curve, double tolerance) {
-  if (curve.points.size() < 2)
-    throw SceneError(curve.name + " has " + std::to_string(curve.points.size()) + " points; must have at least 2");
+/// The tolerance of meeting points.
+double tolerance_of(const std::vector<Curve>& curves, double join_m) {
+  return join_m > 0 ? join_m : default_join * extent(curves);
+}
+
+/// Throws SceneError for a point within `least` of the one before.
+void check_apart(const Curve& curve, double least, double tolerance) {
   for (std::size_t i = 1; i < curve.points.size(); ++i)
-    if ((curve.points[i] - curve.points[i - 1]).norm() <= 2 * tolerance)
+    if ((curve.points[i] - curve.points[i - 1]).norm() <= least)
       throw SceneError("point " + std::to_string(i + 1) + " of " + curve.name + " is at " + text_of(curve.points[i]) +
                        ", as the one before; must be farther away than twice join_m, " + std::to_string(2 * tolerance) +
                        " m");
+}
+
+void check(const Curve& curve, double tolerance) {
+  if (curve.points.size() < 2)
+    throw SceneError(curve.name + " has " + std::to_string(curve.points.size()) + " points; must have at least 2");
+  check_apart(curve, 2 * tolerance, tolerance);
   for (std::size_t i = 0; i < curve.radii.size(); ++i)
     if (!(curve.radii[i] > 0))
       throw SceneError("the radius of point " + std::to_string(i + 1) + " of " + curve.name + " is " +
@@ -184,6 +209,30 @@ void number_components(CurveGraph& graph) {
   }
 }
 
+/// The places of curves' points.
+struct Joined {
+  Places places;
+  std::vector<std::vector<int>> numbers;  ///< of each curve's points
+};
+
+/// Moves points that meet to one place.
+Joined join(std::vector<Curve>& curves, double join_m) {
+  const double tolerance = tolerance_of(curves, join_m);
+  if (curves.empty() || !(tolerance > 0)) throw SceneError("curves need a curve of two points");
+  for (const Curve& curve : curves) check(curve, tolerance);
+  Joined out{Places(tolerance), {}};
+  for (const Curve& curve : curves) {
+    std::vector<int>& own = out.numbers.emplace_back();
+    for (const Vector3& point : curve.points) own.push_back(out.places.number_of(point));
+  }
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    for (std::size_t i = 0; i < curves[c].points.size(); ++i)
+      curves[c].points[i] = out.places.middle(out.numbers[c][i]);
+    check_apart(curves[c], 0, tolerance);
+  }
+  return out;
+}
+
 }  // namespace
 
 bool operator==(const CurveCut& a, const CurveCut& b) {
@@ -194,19 +243,22 @@ bool operator==(const CurveCut& a, const CurveCut& b) {
   return all(a) == all(b);
 }
 
-CurveGraph cut(const std::vector<Curve>& curves, double radius, const CurveCut& how) {
-  const double tolerance = how.join_m > 0 ? how.join_m : 1e-6 * extent(curves);
-  if (curves.empty() || !(tolerance > 0)) throw SceneError("curves need a curve of two points");
-  for (const Curve& curve : curves) check(curve, tolerance);
+double joining_shift(const std::vector<Curve>& curves, double join_m) {
+  std::vector<Curve> joined = curves;
+  join(joined, join_m);
+  double most = 0;
+  for (std::size_t c = 0; c < curves.size(); ++c)
+    for (std::size_t i = 0; i < curves[c].points.size(); ++i)
+      most = std::max(most, (joined[c].points[i] - curves[c].points[i]).norm());
+  return most;
+}
 
-  Places places(tolerance);
-  std::vector<std::vector<int>> numbers;  // of the places of each curve's points
-  for (const Curve& curve : curves) {
-    std::vector<int>& own = numbers.emplace_back();
-    for (const Vector3& point : curve.points) own.push_back(places.number_of(point));
-  }
-  std::vector<int> branches(places.points().size(), 0);  // lines that leave a place
-  std::vector<char> is_node(places.points().size(), 0), held(places.points().size(), 0);
+CurveGraph cut(std::vector<Curve> curves, double radius, const CurveCut& how) {
+  const Joined joined = join(curves, how.join_m);
+  const Places& places = joined.places;
+  const std::vector<std::vector<int>>& numbers = joined.numbers;
+  std::vector<int> branches(places.count(), 0);  // lines that leave a place
+  std::vector<char> is_node(places.count(), 0), held(places.count(), 0);
   for (const std::vector<int>& own : numbers)
     for (std::size_t i = 0; i < own.size(); ++i) {
       const bool end = i == 0 || i + 1 == own.size();
@@ -222,12 +274,15 @@ CurveGraph cut(const std::vector<Curve>& curves, double radius, const CurveCut& 
   }
 
   CurveGraph graph;
-  std::vector<int> node_of(places.points().size(), -1);
-  for (std::size_t place = 0; place < places.points().size(); ++place) {
+  std::vector<int> node_of(places.count(), -1);
+  const auto add_node = [&](int place, bool is_held) {
+    node_of[static_cast<std::size_t>(place)] = static_cast<int>(graph.nodes.size());
+    graph.nodes.push_back({places.middle(place), is_held, {}});
+  };
+  for (std::size_t place = 0; place < places.count(); ++place) {
     if (!is_node[place]) continue;
     const bool end = how.held == HeldPoints::ends && branches[place] == 1;
-    node_of[place] = static_cast<int>(graph.nodes.size());
-    graph.nodes.push_back({places.points()[place], held[place] != 0 || end, {}});
+    add_node(static_cast<int>(place), held[place] != 0 || end);
   }
   const auto meets = [&](int place) { return branches[static_cast<std::size_t>(place)] > 2; };
   for (std::size_t c = 0; c < curves.size(); ++c) {
@@ -241,10 +296,7 @@ CurveGraph cut(const std::vector<Curve>& curves, double radius, const CurveCut& 
       const bool drawn = how.segment_m <= 0;  // every given point ends an edge
       if (!drawn && !is_node[static_cast<std::size_t>(to)]) continue;
       for (const int place : {from, to})
-        if (int& node = node_of[static_cast<std::size_t>(place)]; node < 0) {
-          node = static_cast<int>(graph.nodes.size());
-          graph.nodes.push_back({places.points()[static_cast<std::size_t>(place)], false, {}});
-        }
+        if (node_of[static_cast<std::size_t>(place)] < 0) add_node(place, false);
       const double pieces = drawn ? 1 : std::ceil(cutter.length(first, i) / how.segment_m - 1e-9);
       constexpr double most = 1e7;
       require(pieces <= most, "the number of segments of a curve", pieces, "at most 1e7; segment_m must be greater");

@@ -1,10 +1,10 @@
 // Curves as a graph: their points joined to nodes where curves meet, and the rest cut into edges, each of which becomes a
 // segment.
 //
-// Points of curves that are within a tolerance of each other are one node; also the ends of a closed curve. So are points
-// at which a curve is held. Between two nodes a curve is cut into equal pieces, along its points or along a centripetal
-// Catmull-Rom spline through them (Barry & Goldman 1988). A piece between two nodes of three or more edges is cut in two,
-// one from a node to itself in three.
+// Points of curves that are within a tolerance of each other move to their middle and are one node; also the ends of a
+// closed curve. So are points at which a curve is held. Between two nodes a curve is cut into equal pieces, along its
+// points or along a centripetal Catmull-Rom spline through them (Barry & Goldman 1988). A piece between two nodes of three
+// or more edges is cut in two, one from a node to itself in three.
 #pragma once
 
 #include <optional>
@@ -55,6 +55,9 @@ bool operator==(const CurveCut& a, const CurveCut& b);
 
 /// Throws SceneError for a point at that of the one before, a spline through less than four points, or a held point that
 /// is away from all points. `radius`: of curves without radii.
-CurveGraph cut(const std::vector<Curve>& curves, double radius, const CurveCut& how);
+CurveGraph cut(std::vector<Curve> curves, double radius, const CurveCut& how);
+
+/// How far points move to meet [m], at most. Throws as cut().
+double joining_shift(const std::vector<Curve>& curves, double join_m);
 
 }  // namespace rodsweep

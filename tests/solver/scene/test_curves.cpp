@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "solver/numbers/rotation.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
@@ -211,6 +212,64 @@ TEST_CASE("a spline through points of a circle is a circle, also through its end
     CHECK(scene.rods[0].joint_count() == scene.rods[0].segment_count() - (closed ? 0 : 1));
     for (const Vector3& at : scene.rods[0].position) CHECK(at.norm() == Approx(1).margin(closed ? 0.003 : 0.01));
   }
+}
+
+/// The greatest angle between neighbours at rest.
+double greatest_kink(const Rod& rod) {
+  double most = 0;
+  for (const Joint& joint : rod.joints)
+    most = std::max(most, director(rod.orientation[static_cast<std::size_t>(joint.a)])
+                              .cross(director(rod.orientation[static_cast<std::size_t>(joint.b)]))
+                              .norm());
+  return most;
+}
+
+TEST_CASE("a spline is closed if its ends meet, be it with a rounded last point or within join_m") {
+  const auto ring = [](double gap) {
+    std::vector<Vector3> points;
+    for (int i = 0; i <= 8; ++i) points.emplace_back(std::cos(i * pi / 4), std::sin(i * pi / 4), 0);
+    points.back() = Vector3(1, -gap, 0);
+    Curves p = curves({line(points)}, 0.05);
+    p.how.interpolation = Interpolation::spline;
+    p.how.join_m = gap > 1e-6 ? 0.03 : 0;
+    return greatest_kink(build_scene(p).rods[0]);
+  };
+  const double closed = ring(0);
+  CHECK(closed < 0.1);
+  CHECK(ring(2.4e-16) == Approx(closed).epsilon(1e-9));
+  CHECK(ring(0.02) < 0.12);
+}
+
+TEST_CASE("curves that meet within join_m move to the middle of the gap and are at rest there") {
+  Curves p = curves({line({{0, 0, 0}, {1, 0, 0}}), line({{1.01, 0, 0}, {2.01, 0, 0}})});
+  p.how.join_m = 0.02;
+  p.gravity_m_s2.setZero();
+  CHECK(joining_shift(*p.curves, p.how.join_m) == Approx(0.005));
+  CHECK(joining_shift(*p.curves, 0.001) == 0);
+  Simulation simulation(build_scene(p), 0.001);
+  const Rod start = simulation.rod();
+  REQUIRE(start.joint_count() == start.segment_count() - 1);
+  double length = 0;
+  for (const Segment& segment : start.segments) length += segment.length_m;
+  CHECK(length == Approx(2.01));
+  simulation.run(5);
+  for (std::size_t s = 0; s < start.segments.size(); ++s)
+    CHECK((simulation.rod().position[s] - start.position[s]).norm() < 1e-12);
+}
+
+TEST_CASE("where curves meet within join_m does not depend on their order") {
+  const Curve one = line({{0, 0, 0}, {1, 0, 0}}), two = line({{1.01, 0, 0}, {1, 1, 0}}),
+              three = line({{1, 0.01, 0.01}, {0.5, -1, 0}});
+  const auto joined = [](const std::vector<Curve>& drawn) {
+    Curves p = curves(drawn, 0.3);
+    p.how.join_m = 0.03;
+    p.how.held_at_m = {{0, 0, 0}};
+    const Scene scene = build_scene(p);
+    return positions(scene, scene);
+  };
+  const std::vector<Vector3> expected = joined({one, two, three});
+  CHECK(distance(expected, joined({three, one, two})) < 1e-12);
+  CHECK(distance(expected, joined({two, three, one})) < 1e-12);
 }
 
 TEST_CASE("radii and materials of curves are their own") {
