@@ -16,6 +16,20 @@ struct RigidMotion {
   Vector3 operator()(const Vector3& point) const { return turn * point + shift; }
 };
 
+inline Obstacle moved(const Obstacle& obstacle, const RigidMotion& to) {
+  struct Moved {
+    const RigidMotion& to;
+    Obstacle operator()(const HalfSpace& o) const {
+      return HalfSpace{to(o.point_m), to.turn * o.normal, to.turn * o.velocity_m_s};
+    }
+    Obstacle operator()(const Ball& o) const { return Ball{to(o.centre_m), o.radius_m, to.turn * o.velocity_m_s}; }
+    Obstacle operator()(const Capsule& o) const {
+      return Capsule{to(o.from_m), to(o.to_m), o.radius_m, to.turn * o.velocity_m_s};
+    }
+  };
+  return std::visit(Moved{to}, obstacle);
+}
+
 inline Scene moved(Scene scene, const RigidMotion& to) {
   for (Rod& rod : scene.rods)
     for (int s = 0; s < rod.segment_count(); ++s) {
@@ -25,6 +39,7 @@ inline Scene moved(Scene scene, const RigidMotion& to) {
       rod.angular_velocity[s] = to.turn * rod.angular_velocity[s];
     }
   scene.gravity_m_s2 = to.turn * scene.gravity_m_s2;
+  for (GravityChange& change : scene.gravity_changes) change.by_m_s2 = to.turn * change.by_m_s2;
   for (PointLoad& load : scene.loads) {
     load.force_n = to.turn * load.force_n;
     load.torque_nm = to.turn * load.torque_nm;
@@ -34,10 +49,7 @@ inline Scene moved(Scene scene, const RigidMotion& to) {
       const Pose pose = before(time_s);
       return Pose{to(pose.position), to.turn * pose.orientation};
     };
-  for (Obstacle& obstacle : scene.obstacles) {
-    HalfSpace& floor = std::get<HalfSpace>(obstacle);
-    floor = {to(floor.point_m), to.turn * floor.normal, to.turn * floor.velocity_m_s};
-  }
+  for (Obstacle& obstacle : scene.obstacles) obstacle = moved(obstacle, to);
   return scene;
 }
 
@@ -47,6 +59,21 @@ inline Vector3 mirrored_axis(const Vector3& v) { return {v.x(), -v.y(), -v.z()};
 inline Quaternion mirrored(const Quaternion& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }
 /// Signs of a joint's six rows in its frame: a vector, then an axis.
 inline const Vector6 mirrored_rows = (Vector6() << -1, 1, 1, 1, -1, -1).finished();
+
+inline Obstacle mirrored(const Obstacle& obstacle) {
+  struct Mirrored {
+    Obstacle operator()(const HalfSpace& o) const {
+      return HalfSpace{mirrored(o.point_m), mirrored(o.normal), mirrored(o.velocity_m_s)};
+    }
+    Obstacle operator()(const Ball& o) const {
+      return Ball{mirrored(o.centre_m), o.radius_m, mirrored(o.velocity_m_s)};
+    }
+    Obstacle operator()(const Capsule& o) const {
+      return Capsule{mirrored(o.from_m), mirrored(o.to_m), o.radius_m, mirrored(o.velocity_m_s)};
+    }
+  };
+  return std::visit(Mirrored{}, obstacle);
+}
 
 inline Scene mirrored(Scene scene) {
   for (Rod& rod : scene.rods) {
@@ -64,6 +91,8 @@ inline Scene mirrored(Scene scene) {
     }
   }
   scene.gravity_m_s2 = mirrored(scene.gravity_m_s2);
+  for (GravityChange& change : scene.gravity_changes) change.by_m_s2 = mirrored(change.by_m_s2);
+  for (Obstacle& obstacle : scene.obstacles) obstacle = mirrored(obstacle);
   for (PointLoad& load : scene.loads) {
     load.force_n = mirrored(load.force_n);
     load.torque_nm = mirrored_axis(load.torque_nm);
