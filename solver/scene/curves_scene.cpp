@@ -1,5 +1,7 @@
 #include <algorithm>
-#include <tuple>
+#include <cmath>
+#include <limits>
+#include <set>
 #include <utility>
 
 #include "solver/numbers/rotation.hpp"
@@ -29,6 +31,7 @@ class Builder {
   Builder(const Curves& p, const CurveGraph& graph) : p_(p), graph_(graph) {
     for (std::size_t e = 0; e < graph.edges.size(); ++e) add_segment(graph.edges[e]);
     for (const CurveGraph::Node& node : graph.nodes) ends_.push_back(ends(node));
+    from_held_ = distances_from_held();
     for (std::size_t n = 0; n < graph.nodes.size(); ++n)
       if (!graph.nodes[n].held && ends_[n].size() > 2) hub_.push_back(widest(ends_[n]));
     is_hub_.resize(graph.edges.size());
@@ -110,11 +113,41 @@ class Builder {
     return out;
   }
 
-  End widest(const std::vector<End>& of) const {
-    return *std::max_element(of.begin(), of.end(), [this](const End& a, const End& b) {
-      return std::tuple(radius(a), -segments_[at(a.edge)].length_m) <
-             std::tuple(radius(b), -segments_[at(b.edge)].length_m);
-    });
+  int far_node(const End& end) const { return end.is_last ? edge(end).from : edge(end).to; }
+
+  /// The distance of every node from what is held, along the curves; infinite if nothing of its rod is held.
+  std::vector<double> distances_from_held() const {
+    std::vector<double> distance(graph_.nodes.size(), std::numeric_limits<double>::infinity());
+    std::set<std::pair<double, int>> next;
+    const auto reach = [&](int node, double from_held) {
+      if (from_held < distance[at(node)]) next.emplace(distance[at(node)] = from_held, node);
+    };
+    for (std::size_t n = 0; n < graph_.nodes.size(); ++n)
+      if (graph_.nodes[n].held) reach(static_cast<int>(n), 0);
+    while (!next.empty()) {
+      const auto [from_held, node] = *next.begin();
+      next.erase(next.begin());
+      if (from_held > distance[at(node)]) continue;
+      for (const End& end : ends_[at(node)]) reach(far_node(end), from_held + segments_[at(end.edge)].length_m);
+    }
+    return distance;
+  }
+
+  /// The widest edge of a node. Of equal ones, the shortest; the one that leads to what is held, as the trunk at a fork
+  /// of a tree; and one by its direction: the order of the curves does not matter.
+  End widest(std::vector<End> of) const {
+    const auto keep_least = [&of](const auto& value) {
+      constexpr double rounding = 1e-9;
+      double least = std::numeric_limits<double>::infinity();
+      for (const End& end : of) least = std::min(least, value(end));
+      const double most = least + rounding * std::abs(least);
+      of.erase(std::remove_if(of.begin(), of.end(), [&](const End& end) { return value(end) > most; }), of.end());
+    };
+    keep_least([this](const End& end) { return -radius(end); });
+    keep_least([this](const End& end) { return segments_[at(end.edge)].length_m; });
+    keep_least([this](const End& end) { return from_held_[at(far_node(end))]; });
+    for (const int axis : {0, 1, 2}) keep_least([&](const End& end) { return 2 + director(backward(end))[axis]; });
+    return of.front();
   }
 
   /// The part of an edge that belongs to the joint at this end.
@@ -142,8 +175,10 @@ class Builder {
   JointSpec joined(const End& a, const Softness& of_a, const End& b, const Softness& of_b, bool may_be_straight,
                    double force_n) const {
     Quaternion rest = (onward(a).conjugate() * backward(b)).normalized();
-    if (may_be_straight && p_.rest_shape == Curves::RestShape::straight)
-      rest = Quaternion(rest.w(), 0, 0, rest.z()).normalized();  // its twist
+    if (may_be_straight && p_.rest_shape == Curves::RestShape::straight) {
+      const Quaternion twist(rest.w(), 0, 0, rest.z());
+      rest = twist.norm() < 1e-12 ? Quaternion::Identity() : twist.normalized();  // no twist if the curve turns back
+    }
     JointSpec joint;
     joint.a = number_[at(a.edge)];
     joint.b = number_[at(b.edge)];
@@ -173,6 +208,7 @@ class Builder {
   const CurveGraph& graph_;
   std::vector<SegmentSpec> segments_;  ///< of the edges
   std::vector<std::vector<End>> ends_;
+  std::vector<double> from_held_;  ///< of every node
   std::vector<End> hub_;  ///< of the nodes of three and more edges, in their order
   std::vector<bool> is_hub_;
   std::vector<int> number_;  ///< of each edge's segment in its rod

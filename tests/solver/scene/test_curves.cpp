@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/numbers/rotation.hpp"
+#include "solver/step/observables.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
@@ -125,6 +126,20 @@ TEST_CASE("where three curves meet, their order and directions do not matter") {
   CHECK(distance(first, held({line({y, o}), line({o, z}), line({o, x})}, {0.03, 0.02, 0.05})) < 1e-9);
 }
 
+TEST_CASE("where equal curves meet, their order and directions do not matter either") {
+  const Vector3 o(0, 0, 0), x(1, 0, 0), y(-0.5, 0, 0.8), z(-0.5, 0, -0.8), up(0, 0.9, 0.1);
+  const auto held = [&](const std::vector<Curve>& drawn) {
+    Curves p = curves(drawn, 0.25);
+    p.how.held_at_m = {x};
+    return after(p);
+  };
+  const std::vector<Vector3> fork = held({line({x, o}), line({o, y}), line({o, z})});
+  CHECK(distance(fork, held({line({z, o}), line({y, o}), line({o, x})})) < 1e-9);
+  CHECK(distance(fork, held({line({o, y}), line({x, o, z})})) < 1e-9);
+  const std::vector<Vector3> star = held({line({x, o, y}), line({z, o, up})});
+  CHECK(distance(star, held({line({up, o, x}), line({y, o, z})})) < 1e-9);
+}
+
 TEST_CASE("a strut between two forks, a loop and curves apart have the segments and joints that they need") {
   const Vector3 a(0, 0, 0), b(1, 0, 0);
   Curves h = curves(
@@ -214,14 +229,27 @@ TEST_CASE("a spline through points of a circle is a circle, also through its end
   }
 }
 
-/// The greatest angle between neighbours at rest.
-double greatest_kink(const Rod& rod) {
-  double most = 0;
+/// The sines of the angles between neighbours at rest.
+std::vector<double> kinks(const Rod& rod) {
+  std::vector<double> out;
   for (const Joint& joint : rod.joints)
-    most = std::max(most, director(rod.orientation[static_cast<std::size_t>(joint.a)])
-                              .cross(director(rod.orientation[static_cast<std::size_t>(joint.b)]))
-                              .norm());
-  return most;
+    out.push_back(director(rod.orientation[static_cast<std::size_t>(joint.a)])
+                      .cross(director(rod.orientation[static_cast<std::size_t>(joint.b)]))
+                      .norm());
+  return out;
+}
+double greatest_kink(const Rod& rod) {
+  const std::vector<double> all = kinks(rod);
+  return *std::max_element(all.begin(), all.end());
+}
+
+TEST_CASE("a curve that turns back exactly has the energy of one that almost does") {
+  const auto energy = [](double off) {
+    Curves p = curves({line({{0, 0, 0}, {1, 0, 0}, {0, off, 0}})}, 0);
+    p.rest_shape = Curves::RestShape::straight;
+    return elastic_energy(build_scene(p).rods[0]);
+  };
+  CHECK(energy(0) == Approx(energy(1e-6)).epsilon(1e-6));
 }
 
 TEST_CASE("a spline is closed if its ends meet, be it with a rounded last point or within join_m") {
