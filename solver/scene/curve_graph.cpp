@@ -5,7 +5,9 @@
 #include <boost/math/interpolators/catmull_rom.hpp>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "solver/scene/scene_parts.hpp"
 
@@ -14,11 +16,25 @@ namespace {
 
 constexpr double default_join = 1e-6;  ///< of the extent
 
+using Spline = boost::math::catmull_rom<std::array<double, 3>>;
+
+Vector3 on(const Spline& spline, double parameter) {
+  const std::array<double, 3> at = spline(parameter);
+  return {at[0], at[1], at[2]};
+}
+
 /// A point of a curve, maybe between given ones.
 struct Sample {
   Vector3 at;
   double radius;
-  int given;  ///< index, -1 between them
+  int given;         ///< index, -1 between them
+  double parameter;  ///< of a spline
+};
+
+/// A curve as samples, between which it is almost straight.
+struct Line {
+  std::vector<Sample> samples;
+  std::optional<Spline> spline;  ///< empty: straight between samples
 };
 
 /// Numbers points; those within a tolerance of the first of them have one number, and meet in their middle.
@@ -77,43 +93,52 @@ double extent(const std::vector<Curve>& curves) {
   return box.diagonal().norm();
 }
 
-/// The curve's points; on a spline also those between them.
-std::vector<Sample> samples(const Curve& curve, double radius, Interpolation interpolation) {
-  const auto radius_at = [&](std::size_t i) { return curve.radii.empty() ? radius : curve.radii[i]; };
-  std::vector<Sample> out;
-  if (interpolation == Interpolation::linear) {
-    for (std::size_t i = 0; i < curve.points.size(); ++i)
-      out.push_back({curve.points[i], radius_at(i), static_cast<int>(i)});
-    return out;
-  }
-  using Point = std::array<double, 3>;
-  const auto as_point = [](const Vector3& at) { return Point{at.x(), at.y(), at.z()}; };
+/// Adds samples of a spline after `a`, up to and including `b`, so many that it is away from no chord by more than a
+/// thousandth of its length. `halvings`: of the span between given points.
+void add_samples(const Spline& spline, const Sample& a, const Sample& b, int halvings, std::vector<Sample>& out) {
+  constexpr int least = 2, most = 12;
+  const double parameter = (a.parameter + b.parameter) / 2;
+  const Sample middle{on(spline, parameter), (a.radius + b.radius) / 2, -1, parameter};
+  const double off = (middle.at - (a.at + b.at) / 2).norm();
+  if (halvings == most || (halvings >= least && off <= 1e-3 * (b.at - a.at).norm())) return out.push_back(b);
+  add_samples(spline, a, middle, halvings + 1, out);
+  add_samples(spline, middle, b, halvings + 1, out);
+}
+
+Spline spline_through(const Curve& curve) {
   const std::vector<Vector3>& given = curve.points;
   const std::size_t last = given.size() - 1;
   const bool closed = given.front() == given.back();
   if (closed && last < 4)
     throw SceneError(curve.name + " has " + std::to_string(last) + " points; a closed spline needs at least 4");
-  std::vector<Point> points;
+  const auto as_point = [](const Vector3& at) { return std::array{at.x(), at.y(), at.z()}; };
+  std::vector<std::array<double, 3>> points;
+  if (!closed) points.push_back(as_point(2 * given[0] - given[1]));
   for (std::size_t i = 0; i < last; ++i) points.push_back(as_point(given[i]));
   if (!closed) {  // Boost takes the last point as that before the first: reflections are in between
-    points.insert(points.begin(), as_point(2 * given[0] - given[1]));
     points.push_back(as_point(given[last]));
     points.push_back(as_point(2 * given[last] - given[last - 1]));
   }
-  const std::size_t before = closed ? 0 : 1;
-  const boost::math::catmull_rom<Point> spline(std::move(points), closed);
-  constexpr int between = 16;
-  for (std::size_t i = 0; i < last; ++i) {
-    const double from = spline.parameter_at_point(before + i);
-    const double to = closed && i + 1 == last ? spline.max_parameter() : spline.parameter_at_point(before + i + 1);
-    for (int k = 0; k < between; ++k) {
-      const double part = static_cast<double>(k) / between;
-      const Point at = spline(from + part * (to - from));
-      out.push_back({k == 0 ? curve.points[i] : Vector3(at[0], at[1], at[2]),
-                     radius_at(i) + part * (radius_at(i + 1) - radius_at(i)), k == 0 ? static_cast<int>(i) : -1});
-    }
-  }
-  out.push_back({curve.points[last], radius_at(last), static_cast<int>(last)});
+  return Spline(std::move(points), closed);
+}
+
+Line line_of(const Curve& curve, double radius, Interpolation interpolation) {
+  Line out;
+  const std::size_t last = curve.points.size() - 1;
+  const bool closed = curve.points.front() == curve.points.back();
+  if (interpolation == Interpolation::spline) out.spline = spline_through(curve);
+  const auto given = [&](std::size_t i) {
+    double parameter = 0;
+    if (out.spline)
+      parameter = closed && i == last ? out.spline->max_parameter() : out.spline->parameter_at_point(i + (closed ? 0 : 1));
+    return Sample{curve.points[i], curve.radii.empty() ? radius : curve.radii[i], static_cast<int>(i), parameter};
+  };
+  out.samples.push_back(given(0));
+  for (std::size_t i = 1; i <= last; ++i)
+    if (out.spline)
+      add_samples(*out.spline, given(i - 1), given(i), 0, out.samples);
+    else
+      out.samples.push_back(given(i));
   return out;
 }
 
@@ -144,11 +169,11 @@ void check(const Curve& curve, double tolerance) {
 /// Cuts samples [first, last] of a curve into equal pieces.
 class Cutter {
  public:
-  Cutter(CurveGraph& graph, const std::vector<Sample>& samples, int curve)
-      : graph_(graph), samples_(samples), curve_(curve) {
+  Cutter(CurveGraph& graph, const Line& line, int curve)
+      : graph_(graph), spline_(line.spline), samples_(line.samples), curve_(curve) {
     arc_.push_back(0);
-    for (std::size_t i = 1; i < samples.size(); ++i)
-      arc_.push_back(arc_.back() + (samples[i].at - samples[i - 1].at).norm());
+    for (std::size_t i = 1; i < samples_.size(); ++i)
+      arc_.push_back(arc_.back() + (samples_[i].at - samples_[i - 1].at).norm());
   }
 
   double length(std::size_t first, std::size_t last) const { return arc_[last] - arc_[first]; }
@@ -175,7 +200,9 @@ class Cutter {
     const auto i = static_cast<std::size_t>(next - arc_.begin());
     const double part = (arc - arc_[i - 1]) / (arc_[i] - arc_[i - 1]);
     const Sample &a = samples_[i - 1], &b = samples_[i];
-    return {a.at + part * (b.at - a.at), a.radius + part * (b.radius - a.radius), -1};
+    const double parameter = a.parameter + part * (b.parameter - a.parameter);
+    const Vector3 at = spline_ ? on(*spline_, parameter) : Vector3(a.at + part * (b.at - a.at));
+    return {at, a.radius + part * (b.radius - a.radius), -1, parameter};
   }
   int new_node(const Vector3& at) {
     graph_.nodes.push_back({at, false, {}});
@@ -183,6 +210,7 @@ class Cutter {
   }
 
   CurveGraph& graph_;
+  const std::optional<Spline>& spline_;
   const std::vector<Sample>& samples_;
   int curve_;
   std::vector<double> arc_;
@@ -286,15 +314,16 @@ CurveGraph cut(std::vector<Curve> curves, double radius, const CurveCut& how) {
   }
   const auto meets = [&](int place) { return branches[static_cast<std::size_t>(place)] > 2; };
   for (std::size_t c = 0; c < curves.size(); ++c) {
-    const std::vector<Sample> line = samples(curves[c], radius, how.interpolation);
+    const Line line = line_of(curves[c], radius, how.interpolation);
     Cutter cutter(graph, line, static_cast<int>(c));
     std::size_t first = 0;
-    for (std::size_t i = 1; i < line.size(); ++i) {
-      if (line[i].given < 0) continue;
-      const int from = numbers[c][static_cast<std::size_t>(line[first].given)];
-      const int to = numbers[c][static_cast<std::size_t>(line[i].given)];
-      const bool drawn = how.segment_m <= 0;  // every given point ends an edge
-      if (!drawn && !is_node[static_cast<std::size_t>(to)]) continue;
+    for (std::size_t i = 1; i < line.samples.size(); ++i) {
+      if (line.samples[i].given < 0) continue;
+      const int from = numbers[c][static_cast<std::size_t>(line.samples[first].given)];
+      const int to = numbers[c][static_cast<std::size_t>(line.samples[i].given)];
+      const bool drawn = how.segment_m <= 0;
+      const bool is_corner = drawn || how.interpolation == Interpolation::linear;  // every given point ends an edge
+      if (!is_corner && !is_node[static_cast<std::size_t>(to)]) continue;
       for (const int place : {from, to})
         if (node_of[static_cast<std::size_t>(place)] < 0) add_node(place, false);
       const double pieces = drawn ? 1 : std::ceil(cutter.length(first, i) / how.segment_m - 1e-9);

@@ -2,9 +2,9 @@
 // segment.
 //
 // Points of curves that are within a tolerance of each other move to their middle and are one node; also the ends of a
-// closed curve. So are points at which a curve is held. Between two nodes a curve is cut into equal pieces, along its
-// points or along a centripetal Catmull-Rom spline through them (Barry & Goldman 1988). A piece between two nodes of three
-// or more edges is cut in two, one from a node to itself in three.
+// closed curve. So are points at which a curve is held, and all points of a curve without a spline. Between two nodes a
+// curve is cut into equal pieces, straight or along a centripetal Catmull-Rom spline through its points (Barry & Goldman
+// 1988). A piece between two nodes of three or more edges is cut in two, one from a node to itself in three.
 #pragma once
 
 #include <optional>
@@ -46,7 +46,7 @@ enum class HeldPoints { none, ends };  ///< ends: nodes of one edge
 
 struct CurveCut {
   Interpolation interpolation = Interpolation::linear;
-  double segment_m = 0;  ///< greatest length of an edge, where curves do not end or meet; 0: from point to point
+  double segment_m = 0;  ///< greatest length of an edge; 0: from point to point
   double join_m = 0;     ///< tolerance of meeting points; 0: a millionth of the extent
   HeldPoints held = HeldPoints::none;
   std::vector<Vector3> held_at_m;  ///< in addition
