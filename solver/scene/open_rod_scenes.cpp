@@ -19,10 +19,16 @@ MovingClamp tip_clamp(const TipMotion& motion, const SegmentSpec& last, int segm
           }};
 }
 
-/// Throws SceneError if a rod between two ends is too short for the motion of its tip.
+/// Throws SceneError if a rod between two ends cannot follow the motion of its tip (see reach.hpp).
 template <class RodScene>
-void check_reach(const RodScene& p) {
-  if (!p.tip_motion || p.clamp == Clamp::free || p.stretch == Stretch::physical || p.stretch_compliance_per_j) return;
+void check_tip_motion(const RodScene& p) {
+  if (!p.tip_motion || p.clamp == Clamp::free) return;
+  const int joints = p.size().joints;
+  if (const double turned = p.tip_motion->rotation_deg.norm(); turned > 90.0 * joints)
+    throw SceneError("tip_motion turns the end by " + std::to_string(turned) +
+                     " degrees; must be at most 90 for each of " + std::to_string(joints) +
+                     " joints: use more segments");
+  if (p.stretch == Stretch::physical || p.stretch_compliance_per_j) return;
   const int held = p.clamp == Clamp::segment ? 1 : 0, n = p.segments;
   const Vector3 from = p.vertex_m(held), end = p.vertex_m(n), arm = p.vertex_m(n - held) - end;
   const double length = (n - 2 * held) * (p.vertex_m(1) - p.vertex_m(0)).norm();
@@ -99,7 +105,7 @@ Vector3 BendingRod::vertex_m(int joint) const {
 
 void BendingRod::check() const {
   OpenRod::check();
-  check_reach(*this);
+  check_tip_motion(*this);
 }
 
 void BendingRod::build(Scene& scene) const {
@@ -119,7 +125,7 @@ Vector3 Helix::vertex_m(int joint) const {
 
 void Helix::check() const {
   OpenRod::check();
-  check_reach(*this);
+  check_tip_motion(*this);
 }
 
 void Helix::build(Scene& scene) const {

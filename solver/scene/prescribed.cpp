@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "solver/numbers/rotation.hpp"
+#include "solver/scene/reach.hpp"
 #include "solver/scene/scene_parts.hpp"
 
 namespace rodsweep {
@@ -100,19 +101,36 @@ struct Moved {
   Vector3 about, position;
   Quaternion orientation;
 
+  /// The sum of these over the motions, times their factors.
+  Vector3 sum(Vector3 PrescribedMotion::*of, double time_s) const {
+    Vector3 out(0, 0, 0);
+    for (const PrescribedMotion& motion : motions) out += motion.schedule.at(time_s) * (motion.*of);
+    return out;
+  }
+  Vector3 turned_deg(double time_s) const { return sum(&PrescribedMotion::rotation_deg, time_s); }
+
   Pose operator()(double time_s) const {
-    Vector3 displacement(0, 0, 0), rotation_deg(0, 0, 0);
-    for (const PrescribedMotion& motion : motions) {
-      const double factor = motion.schedule.at(time_s);
-      displacement += factor * motion.displacement_m;
-      rotation_deg += factor * motion.rotation_deg;
-    }
+    const Vector3 rotation_deg = turned_deg(time_s);
     const double angle = rotation_deg.norm() * pi / 180;
     const Quaternion turn =
         angle == 0 ? Quaternion::Identity() : Quaternion(Eigen::AngleAxisd(angle, rotation_deg.normalized()));
-    return {about + displacement + turn * (position - about), (turn * orientation).normalized()};
+    return {about + sum(&PrescribedMotion::displacement_m, time_s) + turn * (position - about),
+            (turn * orientation).normalized()};
   }
 };
+
+/// When to look at motions: at the times of their factors, and some between.
+std::vector<double> times_of(const std::vector<PrescribedMotion>& motions) {
+  constexpr int looks = 20;
+  std::vector<double> given, out;
+  for (const PrescribedMotion& motion : motions)
+    given.insert(given.end(), motion.schedule.times_s.begin(), motion.schedule.times_s.end());
+  std::sort(given.begin(), given.end());
+  for (std::size_t i = 0; i + 1 < given.size(); ++i)
+    for (int k = 0; k < looks; ++k) out.push_back(given[i] + (given[i + 1] - given[i]) * k / looks);
+  out.push_back(given.back());
+  return out;
+}
 
 /// The point about which all motions of a clamp turn it: on the axis of each. Turns about different points give a pose
 /// that depends on their order, so they are refused.
@@ -130,7 +148,8 @@ Vector3 centre_of_turns(const std::vector<PrescribedMotion>& motions, double rou
                    "; must be one point or points of one axis, because the order of such turns would matter");
 }
 
-void add(const std::vector<PrescribedMotion>& motions, const SegmentFinder& places, Scene& scene) {
+void add(const std::vector<PrescribedMotion>& motions, const SegmentFinder& places, bool stretches, Scene& scene) {
+  if (motions.empty()) return;
   std::map<std::pair<int, int>, Moved> moved;
   for (const PrescribedMotion& motion : motions)
     for (const Place& place : places.nearest(motion.at_m, true, "a motion of a clamp")) {
@@ -139,6 +158,7 @@ void add(const std::vector<PrescribedMotion>& motions, const SegmentFinder& plac
           throw SceneError("the clamp at " + text_of(motion.at_m) + " is moved by the scene itself; must be another");
       moved[{place.rod, place.segment}].motions.push_back(motion);
     }
+  std::map<int, std::vector<ClampPath>> paths;  // of each rod
   for (auto& [place, own] : moved) {
     const Rod& rod = scene.rods[static_cast<std::size_t>(place.first)];
     const auto s = static_cast<std::size_t>(place.second);
@@ -146,7 +166,10 @@ void add(const std::vector<PrescribedMotion>& motions, const SegmentFinder& plac
     own.position = rod.position[s];
     own.orientation = rod.orientation[s];
     scene.clamps.push_back({place.first, place.second, own});
+    paths[place.first].push_back({place.second, own, [own = own](double time_s) { return own.turned_deg(time_s); }});
   }
+  for (const auto& [rod, own] : paths)
+    check_reach(scene.rods[static_cast<std::size_t>(rod)], own, times_of(motions), stretches);
 }
 
 }  // namespace
@@ -182,10 +205,10 @@ double Prescribed::largest_gravity_m_s2(const Vector3& constant) const {
   return sum;
 }
 
-void add_prescribed(const Prescribed& prescribed, Scene& scene) {
+void add_prescribed(const Prescribed& prescribed, Scene& scene, bool stretches) {
   const SegmentFinder places(scene);
   for (const PrescribedLoad& load : prescribed.loads) add(load, places, scene);
-  add(prescribed.motions, places, scene);
+  add(prescribed.motions, places, stretches, scene);
   scene.gravity_changes = prescribed.gravity;
 }
 

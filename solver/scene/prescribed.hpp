@@ -47,8 +47,8 @@ struct Prescribed {
 };
 
 /// Adds them, checked, to a scene with rods. Throws SceneError if a point is away from all rods, if a load is on a held
-/// segment, if a motion is on one that is not held or that the scene moves itself, or if motions turn one segment about
-/// different points.
-void add_prescribed(const Prescribed& prescribed, Scene& scene);
+/// segment, if a motion is on one that is not held or that the scene moves itself, if motions turn one segment about
+/// different points, or if rods cannot follow them (reach.hpp). `stretches`: whether rods may become longer.
+void add_prescribed(const Prescribed& prescribed, Scene& scene, bool stretches = true);
 
 }  // namespace rodsweep

@@ -43,7 +43,7 @@ Scene build_scene(const SceneSpec& spec) {
   scene.contact = p.contact;
   scene.obstacles = p.obstacles;
   std::visit([&scene](const auto& rods) { rods.build(scene); }, spec);
-  add_prescribed(p.prescribed, scene);
+  add_prescribed(p.prescribed, scene, p.stretch == Stretch::physical || p.stretch_compliance_per_j);
   return scene;
 }
 

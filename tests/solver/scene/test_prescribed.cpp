@@ -1,5 +1,7 @@
 // Loads, motions of clamps and changes of gravity over time.
 #include <catch2/catch.hpp>
+#include <memory>
+#include <string>
 
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
@@ -116,6 +118,7 @@ TEST_CASE("turns of one clamp about points of one axis add up, those about diffe
 TEST_CASE("points of loads and motions may be rounded") {
   Net net;  // its corners are held at points
   net.rows = net.columns = 4;
+  net.stretch = Stretch::physical;
   const Schedule schedule{{0, 1}, {0, 1}, false};
   const double rounded = 3 * net.mesh_m;
   net.prescribed.motions.push_back({{rounded * (1 + 1e-8), 1e-9, 0}, {0, 0.1, 0}, {0, 0, 0}, schedule});
@@ -124,6 +127,56 @@ TEST_CASE("points of loads and motions may be rounded") {
   CHECK((scene.clamps[0].pose(1).position - Vector3(rounded, 0.1, 0)).norm() < 1e-12);
   net.prescribed.motions[0].at_m.x() *= 1.001;
   CHECK_THROWS_WITH(build_scene(net), Contains("m away from the nearest segment"));
+}
+
+/// What is said of a curve of two legs of 0.5 m in pieces of 0.1 m, held at both ends, under these motions; "" if they are
+/// possible.
+std::string refused_between_ends(const std::vector<PrescribedMotion>& motions, Stretch stretch) {
+  Curves p;
+  static_cast<RodParameters&>(p) = test::bending_rod(10);
+  p.stretch = stretch;
+  p.curves = std::make_shared<const std::vector<Curve>>(
+      std::vector{Curve{"curve", {{0, 0, 0}, {0.5, 0, 0}, {0.5, 0, 0.5}}, {}, {}, {}, {}}});
+  p.how.segment_m = 0.1;
+  p.how.held = HeldPoints::ends;
+  p.prescribed.motions = motions;
+  try {
+    build_scene(p);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_CASE("motions that pull a rod apart are refused unless it stretches") {
+  const Schedule schedule{{0, 1, 2}, {0, 1, 0}, false};
+  const Vector3 a(0, 0, 0), b(0.5, 0, 0.5);
+  const auto pulled = [&](double by, Stretch stretch) {  // they are 0.707 m apart, along a rod of 1 m
+    const Vector3 along = by / 2 * (b - a).normalized();
+    return refused_between_ends({{b, along, {0, 0, 0}, schedule}, {a, -along, {0, 0, 0}, schedule}}, stretch);
+  };
+  CHECK(pulled(0.29, Stretch::inextensible) == "");
+  CHECK_THAT(pulled(0.3, Stretch::inextensible),
+             Contains("motions of the clamps at [0, 0, 0] and [0.5, 0, 0.5] pull the rod between them to 1.007") &&
+                 Contains("must be at most its length, 1.000000 m, or \"stretch\" must be \"physical\""));
+  CHECK(pulled(0.3, Stretch::physical) == "");
+}
+
+TEST_CASE("motions that turn a joint by more than a right angle are refused") {
+  const Schedule schedule{{0, 1}, {0, 1}, false};
+  const auto turned = [&](double one_deg, double other_deg) {  // 11 joints
+    return refused_between_ends(
+        {{{0, 0, 0}, {0, 0, 0}, {one_deg, 0, 0}, schedule}, {{0.5, 0, 0.5}, {0, 0, 0}, {other_deg, 0, 0}, schedule}},
+        Stretch::physical);
+  };
+  CHECK(turned(989, 0) == "");
+  CHECK(turned(2000, 1100) == "");
+  CHECK_THAT(turned(600, -400), Contains("turn them against each other by 1000") &&
+                                    Contains("must be at most 90 for each of the 11 joints between them"));
+  BendingRod tip = test::bending_rod(10, Clamp::wall);
+  tip.stretch = Stretch::physical;
+  tip.tip_motion = TipMotion{{0, 0, 0}, {1000, 0, 0}, 1};
+  CHECK_THROWS_WITH(build_scene(tip), Contains("tip_motion turns the end by 1000") && Contains("each of 11 joints"));
 }
 
 TEST_CASE("a motion moves all segments that are held at its point") {
