@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <cctype>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -19,13 +19,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The words of each line, without comments.
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// The fields of each line, without comments and quotes.
 class Lines {
  public:
-  Lines(const std::string& text, const std::filesystem::path& file) : file_(file) {
-    constexpr const char* byte_order_mark = "\xEF\xBB\xBF";
-    in_.str(text.compare(0, 3, byte_order_mark) == 0 ? text.substr(3) : text);
-  }
+  Lines(const std::string& text, const std::filesystem::path& file) : file_(file), in_(with_line_feeds(text)) {}
 
   bool next() {
     std::string line;
@@ -33,11 +35,18 @@ class Lines {
     ++number_;
     is_comment_ = line.find('#') != std::string::npos;
     line.erase(std::min(line.find('#'), line.size()));
-    for (char& c : line)
-      if (c == ',' || c == ';' || c == '\r') c = ' ';
-    std::istringstream parts(line);
+    line.erase(std::remove(line.begin(), line.end(), '"'), line.end());
     words.clear();
-    for (std::string word; parts >> word;) words.push_back(word);
+    for (std::size_t begin = 0; begin <= line.size();) {
+      const std::size_t end = std::min(line.find_first_of(",;", begin), line.size());
+      std::istringstream parts(line.substr(begin, end - begin));
+      const std::size_t before = words.size();
+      for (std::string word; parts >> word;) words.push_back(word);
+      if (words.size() == before) words.emplace_back();  // an empty field
+      begin = end + 1;
+    }
+    const auto is_empty = [](const std::string& word) { return word.empty(); };
+    if (std::all_of(words.begin(), words.end(), is_empty)) words.clear();
     return true;
   }
 
@@ -46,18 +55,15 @@ class Lines {
 
   template <class Number>
   Number number(std::size_t word, const char* name, const char* bound) const {
-    Number value{};
-    const std::string& text = words[word];
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(static_cast<double>(value)))
-      refuse(fmt::format("{} is \"{}\"; must be {}", name, shortened(text), bound));
-    return value;
+    const auto value = number_in<Number>(words[word]);
+    if (!value || !std::isfinite(static_cast<double>(*value)))
+      refuse(fmt::format("{} is \"{}\"; must be {}", name, shortened(words[word]), bound));
+    return *value;
   }
-  Vector3 point(std::size_t first) const {
-    Vector3 at;
-    for (std::size_t i = 0; i < 3; ++i)
-      at[static_cast<int>(i)] = number<double>(first + i, std::array{"x", "y", "z"}[i], "a finite number");
-    return at;
+  /// x, y and z are these words.
+  Vector3 point(std::size_t x, std::size_t y, std::size_t z) const {
+    constexpr const char* bound = "a finite number";
+    return {number<double>(x, "x", bound), number<double>(y, "y", bound), number<double>(z, "z", bound)};
   }
   [[noreturn]] void refuse(const std::string& text) const {
     throw CurveError(fmt::format("{}:{}: {}", file_.native(), number_, text));
@@ -70,27 +76,64 @@ class Lines {
   bool is_comment_ = false;
 };
 
+/// The columns of a table: x, y, z and maybe a radius, where a header says, or in this order.
+class Columns {
+ public:
+  /// Whether the line is a header, which it then reads: names of columns, the first of which may be an index without one.
+  bool read_header(const Lines& lines) {
+    const auto first =
+        std::find_if(lines.words.begin(), lines.words.end(), [](const auto& word) { return word != ""; });
+    if (number_in<double>(*first)) return false;
+    std::array<bool, names.size()> found{};
+    for (std::size_t i = 0; i < lines.words.size(); ++i) {
+      const std::string word = lower_case(lines.words[i]);
+      const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), word) - names.begin());
+      if (i == 0 && word.empty()) continue;
+      if (k == names.size() || std::exchange(found[k], true))
+        lines.refuse(fmt::format("column {} is \"{}\"; must be one of x, y, z and radius, each once", i + 1,
+                                 shortened(lines.words[i])));
+      place_[k] = i;
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!found[k])
+        lines.refuse(fmt::format("no column is called \"{}\"; must be x, y, z or x, y, z, radius", names[k]));
+    has_header_ = true;
+    has_radius_ = found[3];
+    count_ = lines.words.size();
+    return true;
+  }
+
+  void add(const Lines& lines, Curve& curve) {
+    const std::size_t count = lines.words.size();
+    if (!has_header_ && count != 3 && count != 4)
+      lines.refuse(fmt::format("{} values; must be x y z, or x y z radius", count));
+    if (!has_header_ && curve.points.empty()) {
+      count_ = count;
+      has_radius_ = count == 4;
+    }
+    if (count != count_)
+      lines.refuse(fmt::format("{} values; must be {}, as in the {}", count, count_,
+                               has_header_ ? "header" : "curve's first line"));
+    curve.points.push_back(lines.point(place_[0], place_[1], place_[2]));
+    if (has_radius_) curve.radii.push_back(lines.number<double>(place_[3], "radius", "a finite number"));
+  }
+
+ private:
+  static constexpr std::array<const char*, 4> names{"x", "y", "z", "radius"};
+  std::array<std::size_t, 4> place_{0, 1, 2, 3};
+  std::size_t count_ = 0;
+  bool has_header_ = false, has_radius_ = false;
+};
+
 std::vector<Curve> from_table(Lines lines) {
   std::vector<Curve> curves;
+  Columns columns;
   bool begins = true, first = true;
-  std::size_t columns = 0;
   while (lines.next()) {
     if (lines.is_blank()) begins = true;
-    if (lines.words.empty()) continue;
-    using Words = std::vector<std::string>;
-    if (std::exchange(first, false) &&
-        (lines.words == Words{"x", "y", "z"} || lines.words == Words{"x", "y", "z", "radius"}))
-      continue;
-    if (lines.words.size() != 3 && lines.words.size() != 4)
-      lines.refuse(fmt::format("{} values; must be x y z, or x y z radius", lines.words.size()));
-    if (std::exchange(begins, false)) {
-      curves.emplace_back();
-      columns = lines.words.size();
-    }
-    if (lines.words.size() != columns)
-      lines.refuse(fmt::format("{} values; must be {}, as in the curve's first line", lines.words.size(), columns));
-    curves.back().points.push_back(lines.point(0));
-    if (columns == 4) curves.back().radii.push_back(lines.number<double>(3, "radius", "a finite number"));
+    if (lines.words.empty() || (std::exchange(first, false) && columns.read_header(lines))) continue;
+    if (std::exchange(begins, false)) curves.emplace_back();
+    columns.add(lines, curves.back());
   }
   return curves;
 }
@@ -102,7 +145,7 @@ std::vector<Curve> from_obj(Lines lines) {
     if (lines.words.empty()) continue;
     if (lines.words[0] == "v") {
       if (lines.words.size() < 4) lines.refuse("\"v\" needs x y z");
-      points.push_back(lines.point(1));
+      points.push_back(lines.point(1, 2, 3));
     }
     if (lines.words[0] != "l") continue;
     Curve& curve = curves.emplace_back();
@@ -195,7 +238,7 @@ class JsonCurves {
 }  // namespace
 
 std::vector<Curve> parse_curves(const std::string& text, const std::filesystem::path& file) {
-  const std::string ending = file.extension().native();
+  const std::string ending = lower_case(file.extension().native());
   std::vector<Curve> curves;
   if (ending == ".json")
     curves = JsonCurves(text, file).read();

@@ -1,12 +1,14 @@
 // Reads curves from files of lines through points. The ending of the name tells the format:
 //
 //   .csv, .txt   a point per line, "x y z" or "x y z radius", between spaces, tabs, commas or semicolons; a blank line
-//                begins the next curve; '#' begins a comment; a first line "x,y,z" or "x,y,z,radius" is a header
+//                begins the next curve; '#' begins a comment. A first line of names says which column is which; the
+//                first column may be an index without a name, which is left out
 //   .json        {"curves": [{"points": [[x, y, z], ...], "radius": 0.01, ...}]}; "radius" may be a list, one for each
 //                point; also "name", "youngs_modulus_pa", "torsion_modulus_pa", "density_kg_m3"
 //   .obj         "v x y z" and "l 1 2 3"; other elements are ignored
 //
-// Refused, with the line or the key: what is no finite number, a radius that is not positive, curves of one point.
+// Quotes, capitals in names, plus signs and all ends of lines are accepted. Refused, with the line or the key: what is
+// not a finite number, such as an empty field; a radius that is not positive; curves of one point.
 #pragma once
 
 #include <filesystem>

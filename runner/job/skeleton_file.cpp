@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -54,11 +53,7 @@ class Reader {
   Line& at(int index) { return lines_[static_cast<std::size_t>(index)]; }
 
   void read_lines() {
-    constexpr const char* byte_order_mark = "\xEF\xBB\xBF";
-    std::string text = text_.compare(0, 3, byte_order_mark) == 0 ? text_.substr(3) : text_;
-    const bool old_ends = text.find('\n') == std::string::npos;  // of lines: only carriage returns
-    std::replace(text.begin(), text.end(), '\r', old_ends ? '\n' : ' ');
-    std::istringstream in(text);
+    std::istringstream in(with_line_feeds(text_));
     int number = 0;
     for (std::string line; std::getline(in, line);) {
       ++number;
@@ -208,24 +203,19 @@ class Reader {
 
   double real(const std::vector<std::string>& words, std::size_t column, int line,
               const char* bound = "a finite number") const {
-    const std::string& word = words[column];
-    double value{};
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-      refuse(line, fmt::format("{} is \"{}\"; must be {}", columns[column], shortened(word), bound));
-    return value;
+    const auto value = number_in<double>(words[column]);
+    if (!value || !std::isfinite(*value))
+      refuse(line, fmt::format("{} is \"{}\"; must be {}", columns[column], shortened(words[column]), bound));
+    return *value;
   }
 
   /// Also "1.0", which some tools write.
   std::int64_t integer(const std::vector<std::string>& words, std::size_t column, int line) const {
     constexpr double most_exact = 9007199254740992;  // 2^53
-    const std::string& word = words[column];
-    std::int64_t value{};
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error == std::errc() && end == word.data() + word.size()) return value;
+    if (const auto value = number_in<std::int64_t>(words[column])) return *value;
     const double number = real(words, column, line, "an integer");
     if (number != std::floor(number) || std::abs(number) > most_exact)
-      refuse(line, fmt::format("{} is \"{}\"; must be an integer", columns[column], shortened(word)));
+      refuse(line, fmt::format("{} is \"{}\"; must be an integer", columns[column], shortened(words[column])));
     return static_cast<std::int64_t>(number);
   }
 

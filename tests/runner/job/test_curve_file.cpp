@@ -23,8 +23,30 @@ TEST_CASE("tables: columns, headers, comments, blank lines") {
   CHECK_THROWS_WITH(parse_curves("0 0 0\n1 0 0 1\n", "a.csv"),
                     "a.csv:2: 4 values; must be 3, as in the curve's first line");
   CHECK_THROWS_WITH(parse_curves("0 0 nan\n", "a.csv"), "a.csv:1: z is \"nan\"; must be a finite number");
-  CHECK_THROWS_WITH(parse_curves("a b c\n", "a.csv"), Contains("a.csv:1: x is \"a\""));
+  CHECK_THROWS_WITH(parse_curves("0 a 0\n", "a.csv"), Contains("a.csv:1: y is \"a\""));
   CHECK_THROWS_WITH(parse_curves("\n\n", "a.csv"), "a.csv: has no curve");
+}
+
+TEST_CASE("tables: the names in a header decide, and an index without a name is left out") {
+  for (const char* text :
+       {",x,y,z\n0,1,2,3\n1,4,5,6\n", "z;X;y\n3;1;2\n6;4;5\n", "\"x\",\"y\",\"z\"\n\"1\",+2,3\n4,5,6\n",
+        "x,y,z\r1,2,3\r4,5,6\r", ",Radius,x,y,z\n0,.1,1,2,3\n1,.1,4,5,6\n"}) {
+    const std::vector<Curve> curves = parse_curves(text, "a.CSV");
+    REQUIRE(curves.size() == 1);
+    CHECK(curves[0].points == Points{{1, 2, 3}, {4, 5, 6}});
+    if (!curves[0].radii.empty()) CHECK(curves[0].radii == std::vector<double>{0.1, 0.1});
+  }
+  CHECK(parse_curves("x,y,z\n0,0,0\n1,0,0\n,,\n0,1,0\n1,1,0\n", "a.csv").size() == 2);  // as spreadsheets write
+  const auto refused = [](const char* text, const char* words) {
+    CHECK_THROWS_WITH(parse_curves(text, "a.csv"), Contains(words));
+  };
+  refused("x,y,z,diameter\n", "a.csv:1: column 4 is \"diameter\"; must be one of x, y, z and radius, each once");
+  refused("x,y,,z\n", "a.csv:1: column 3 is \"\"");
+  refused("x,y,x\n", "a.csv:1: column 3 is \"x\"");
+  refused("x,y\n", "a.csv:1: no column is called \"z\"");
+  refused("x,y,z\n0,0,0,1\n", "a.csv:2: 4 values; must be 3, as in the header");
+  refused("0,0,0\n1,,0\n", "a.csv:2: y is \"\"; must be a finite number");
+  refused("0,0,0\n1,0,0,\n", "a.csv:2: 4 values; must be 3");
 }
 
 TEST_CASE("JSON: radii, names and materials of each curve") {
