@@ -78,9 +78,9 @@ std::string slurm_text(const Estimate& needs, const PlanOptions& options) {
       needs.longest, duration_text(needs.longest_s));
 }
 
-/// What stops or surprises the run: too little disk space, failed probes, months of computing.
+/// What stops or surprises the run: implausible values, too little disk space, failed probes, months of computing.
 std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Probe>& probes, const PlanOptions& options) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = plan.job().warnings;
   RunOptions run;
   const fs::path output = output_of(run, plan.job().name);
   const fs::path folder = fs::exists(output.parent_path()) ? output.parent_path() : fs::path(".");

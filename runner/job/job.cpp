@@ -71,9 +71,9 @@ Job parsed(std::string text, const std::filesystem::path& path, Look look) {
   check_guesses(job, space);
   check_samples(job, space);
   check_obstacles(job.values["scene"], path);
-  for (std::string& warning : thick_rods(job.values["scene"], path)) job.warnings.push_back(std::move(warning));
-  for (std::string& warning : assumed_of_skeletons(job)) job.warnings.push_back(std::move(warning));
-  for (std::string& warning : unbalanced_loads(job.values, path)) job.warnings.push_back(std::move(warning));
+  for (const std::vector<std::string>& some : {thick_rods(job.values["scene"], path), assumed_of_skeletons(job),
+                                               joined_curves(job), unbalanced_loads(job.values, path)})
+    job.warnings.insert(job.warnings.end(), some.begin(), some.end());
   return job;
 }
 

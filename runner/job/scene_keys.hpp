@@ -27,7 +27,11 @@ std::vector<std::string> thick_rods(const nlohmann::ordered_json& scenes, const 
 /// What was assumed to read the job's skeletons.
 std::vector<std::string> assumed_of_skeletons(const Job& job);
 
-/// A warning for each load on a tip in steps that do not balance momentum, if the method could. `values`: of a validated job.
+/// How far points of curves move to meet within `join_m`, at most.
+std::vector<std::string> joined_curves(const Job& job);
+
+/// A warning for each load at a point, and for each scene that is twisted or spun, in steps that do not balance momentum,
+/// if the method could. `values`: of a validated job.
 std::vector<std::string> unbalanced_loads(const nlohmann::ordered_json& values, const std::filesystem::path& file);
 
 }  // namespace rodsweep

@@ -45,6 +45,19 @@ TEST_CASE("mistakes in a file of curves, or in what is held, are told with file 
              Contains("scene: held_at_m has [0, 1, 0], which is no point of a curve"));
 }
 
+TEST_CASE("how far points move to meet within join_m is told") {
+  const JobFolder folder;
+  folder.write("bow.csv", "0 0 0\n100 0 0\n\n101 0 0\n100 50 0\n");
+  const auto warnings = [&](const std::string& more) {
+    return folder.job(curves_job(R"(, "curves_unit_m": 0.01)" + more)).warnings;
+  };
+  CHECK(warnings("").empty());
+  CHECK(warnings(R"(, "join_m": 0.001)").empty());
+  const auto joined = warnings(R"(, "join_m": {"grid": [0, 0.02]})");
+  REQUIRE(joined.size() == 1);
+  CHECK_THAT(joined[0], Contains("scene.join_m.grid[1]: points of bow.csv move by up to 0.005 m to where they meet"));
+}
+
 TEST_CASE("loads, motions and changes of gravity are read, and their values may be sweeps") {
   const Plan plan = plan_of(with("/scene/loads", R"([
       {"at_m": [1, 0, 0], "force_n": [0, {"grid": [-1, -2]}, 0], "times_s": [0, 1], "factors": [0, 3], "smooth": true},
