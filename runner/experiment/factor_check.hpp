@@ -1,6 +1,6 @@
 // Checks before a run whether a factorisation would exceed its memory limit (solver/factor/elimination_plan.hpp).
-// Only rods with loops and thousands of joints can exceed it. Each size of such rods in a job is checked once, in about
-// a second per 100,000 joints.
+// Only rods with thousands of joints can exceed it, that have loops or very many joints on one segment. Each size of such
+// rods in a job is checked once, in about a second per 100,000 joints.
 #pragma once
 
 #include "runner/plan/plan.hpp"

@@ -1,7 +1,10 @@
 // Curves from files, and loads, motions and changes of gravity in jobs.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "runner/experiment/factor_check.hpp"
 #include "runner/plan/scene_spec.hpp"
 #include "tests/runner/job_folder.hpp"
 #include "tests/runner/refused_jobs.hpp"
@@ -56,6 +59,19 @@ TEST_CASE("how far points move to meet within join_m is told") {
   const auto joined = warnings(R"(, "join_m": {"grid": [0, 0.02]})");
   REQUIRE(joined.size() == 1);
   CHECK_THAT(joined[0], Contains("scene.join_m.grid[1]: points of bow.csv move by up to 0.005 m to where they meet"));
+}
+
+TEST_CASE("a star of very many curves from a free point is refused before its matrix is built") {
+  const JobFolder folder;
+  std::string star;
+  for (int i = 0; i < 6000; ++i) star += fmt::format("0 0 0\n1 {} 0\n\n", i);
+  folder.write("bow.csv", star.c_str());
+  const Json job = with("/solve", R"({"method": "direct"})", without("/guesses", curves_job()));
+  CHECK_THAT(message_of<JobError>([&] { check_factors(Plan(folder.job(job))); }),
+             Contains("scene: task 0: 5999 joints on one segment need 9.65 GiB") &&
+                 Contains("must be at most 4 GiB: hold the point where they meet"));
+  const Json held = with("/scene/held_at_m", "[[0, 0, 0]]", job);
+  CHECK_NOTHROW(check_factors(Plan(folder.job(held))));
 }
 
 TEST_CASE("loads, motions and changes of gravity are read, and their values may be sweeps") {
