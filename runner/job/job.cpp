@@ -9,7 +9,7 @@
 
 #include "runner/job/job_keys.hpp"
 #include "runner/job/job_reader.hpp"
-#include "runner/job/scene_keys.hpp"
+#include "runner/job/scene_checks.hpp"
 #include "runner/job/strict_json.hpp"
 #include "runner/job/sweep_space.hpp"
 #include "runner/job/training_job.hpp"
@@ -71,9 +71,7 @@ Job parsed(std::string text, const std::filesystem::path& path, Look look) {
   check_guesses(job, space);
   check_samples(job, space);
   check_obstacles(job.values["scene"], path);
-  for (const std::vector<std::string>& some : {thick_rods(job.values["scene"], path), assumed_of_skeletons(job),
-                                               joined_curves(job), unbalanced_loads(job.values, path)})
-    job.warnings.insert(job.warnings.end(), some.begin(), some.end());
+  for (std::string& warning : scene_warnings(job)) job.warnings.push_back(std::move(warning));
   return job;
 }
 

@@ -1,17 +1,9 @@
 #include "runner/job/scene_keys.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
 #include "runner/job/curve_file.hpp"
 #include "runner/job/job.hpp"
 #include "runner/job/scene_part_keys.hpp"
 #include "runner/job/skeleton_file.hpp"
-#include "runner/job/sweep.hpp"
-#include "runner/text/key_path.hpp"
 
 namespace rodsweep {
 
@@ -293,60 +285,6 @@ void add_touching(Table& table) {
       &Knot::pull_m_s);
 }
 
-/// Calls `visit(scene, path)` for each scene of a sweep of scenes.
-template <class Visit>
-void visit_scenes(const Json& scenes, const std::string& path, const Visit& visit) {
-  const std::string word = sweep_word(scenes);
-  if (word.empty()) return visit(scenes, path);
-  for (std::size_t i = 0; i < scenes[word].size(); ++i)
-    visit_scenes(scenes[word][i], element(member(path, word), i), visit);
-}
-
-/// The single values that a key can take in a validated job, each with its path.
-void visit_values(const Json& value, const std::string& path,
-                  const std::function<void(const Json&, const std::string&)>& visit) {
-  if (value.is_null()) return;
-  const std::string word = sweep_word(value);
-  const Json& items = word.empty() ? value : value[word];
-  if (!items.is_array()) return visit(value, path);
-  for (std::size_t i = 0; i < items.size(); ++i)
-    visit_values(items[i], element(word.empty() ? path : member(path, word), i), visit);
-}
-
-void visit_numbers(const Json& value, const std::string& path,
-                   const std::function<void(double, const std::string&)>& visit) {
-  visit_values(value, path, [&](const Json& each, const std::string& at) {
-    if (each.is_number()) visit(each, at);
-  });
-}
-
-bool may_be_nonzero(const Json& numbers) {
-  bool found = false;
-  visit_numbers(numbers, "", [&](double number, const std::string&) { found |= number != 0; });
-  return found;
-}
-
-/// The path of the first motion with a rotation, or of the first other key that twists rods; "" if there is none.
-std::string what_twists(const Json& scene, const std::string& path) {
-  std::string found;
-  const auto look = [&](const Json& motions, const std::string& key) {
-    visit_values(motions, member(path, key), [&](const Json& motion, const std::string& at) {
-      if (found.empty() && motion.is_object() && may_be_nonzero(motion.value("rotation_deg", Json())))
-        found = member(at, "rotation_deg");
-    });
-  };
-  look(scene.value("tip_motion", Json()), "tip_motion");
-  look(scene["motions"], "motions");
-  if (found.empty() && may_be_nonzero(scene.value("twist_deg", Json()))) found = member(path, "twist_deg");
-  return found;
-}
-
-/// Whether a list has an item, or a list of a sweep.
-bool has_item(const Json& list) {
-  const std::string word = sweep_word(list);
-  return word.empty() ? !list.empty() : std::any_of(list[word].begin(), list[word].end(), has_item);
-}
-
 }  // namespace
 
 const KeyTable<SceneSpec>& scene_keys() {
@@ -371,103 +309,6 @@ Key scene_key() {
   std::vector<Key> keys{type};
   keys.insert(keys.end(), scene_keys().keys().begin(), scene_keys().keys().end());
   return object_key("scene", "the rods that are simulated", std::move(keys), type.name.c_str());
-}
-
-void check_obstacles(const Json& scenes, const std::filesystem::path& file) {
-  visit_scenes(scenes, "scene", [&](const Json& scene, const std::string& path) {
-    if (scene["contact"] == "none" && has_item(scene["obstacles"]))
-      throw job_error(file, member(path, "obstacles"),
-                      "rods without \"contact\" pass through obstacles; give the scene \"contact\": "
-                      "{\"friction\": 0.3}, or remove this key");
-  });
-}
-
-std::vector<std::string> thick_rods(const Json& scenes, const std::filesystem::path& file) {
-  const Key& radius = *find_key(scene_keys().keys(), "radius_m");
-  std::vector<std::string> warnings;
-  visit_scenes(scenes, "scene", [&](const Json& scene, const std::string& path) {
-    double thickest = 0;
-    std::string place;
-    visit_numbers(scene.value("radius_m", Json()), member(path, "radius_m"), [&](double number, const std::string& at) {
-      if (number > thickest) thickest = number, place = at;
-    });
-    for (const char* across : {"length_m", "helix_radius_m", "mesh_m"}) {
-      double shortest = INFINITY;
-      visit_numbers(scene.value(across, Json()), "",
-                    [&](double number, const std::string&) { shortest = std::min(shortest, number); });
-      if (2 * thickest > shortest)
-        warnings.emplace_back(job_error(file, place,
-                                        fmt::format("{:g} m makes a rod thicker than long: {} is {:g} m{}", thickest,
-                                                    across, shortest, other_unit(radius, thickest, shortest / 2)))
-                                  .what());
-    }
-  });
-  return warnings;
-}
-
-std::vector<std::string> assumed_of_skeletons(const Job& job) {
-  std::vector<std::string> warnings;
-  for (const auto& [written, file] : job.files) {
-    if (file.hash.empty() || !file.is_used_as(FileKind::skeleton)) continue;
-    try {
-      for (const std::string& warning : shared_skeleton(file.path, file.hash).warnings) warnings.push_back(warning);
-    } catch (const SkeletonError&) {  // the plan refuses it
-    }
-  }
-  return warnings;
-}
-
-std::vector<std::string> joined_curves(const Job& job) {
-  std::vector<std::string> warnings;
-  visit_scenes(job.values["scene"], "scene", [&](const Json& scene, const std::string& path) {
-    double farthest = 0;
-    std::string place;
-    visit_numbers(scene.value("join_m", Json()), member(path, "join_m"), [&](double join_m, const std::string& at) {
-      if (join_m > farthest) farthest = join_m, place = at;
-    });
-    if (farthest == 0) return;
-    visit_values(scene["curves"], "", [&](const Json& written, const std::string&) {
-      const InputFile& file = job.files.at(written);
-      if (file.hash.empty()) return;
-      visit_numbers(scene["curves_unit_m"], "", [&](double unit_m, const std::string&) {
-        try {
-          const double shift = unit_m * joining_shift(shared_curves(file.path, file.hash), farthest / unit_m);
-          if (shift > 0)
-            warnings.emplace_back(job_error(job.path, place,
-                                            fmt::format("points of {} move by up to {:.3g} m to where they meet",
-                                                        written.get<std::string>(), shift))
-                                      .what());
-        } catch (const CurveError&) {  // the plan refuses it
-        } catch (const SceneError&) {
-        }
-      });
-    });
-  });
-  return warnings;
-}
-
-std::vector<std::string> unbalanced_loads(const Json& values, const std::filesystem::path& file) {
-  const Json method = values.value("solve", Json::object()).value("method", Json("direct"));  // data sets have none
-  if (values["time"]["balance"] != false || (method.is_string() && method != "cg" && method != "direct")) return {};
-  std::vector<std::string> warnings;
-  const auto warn = [&](const std::string& path, const char* what, const char* also = "") {
-    warnings.emplace_back(
-        job_error(file, path,
-                  fmt::format("{}; set \"balance\": true{} in \"time\" (methods direct and cg)", what, also))
-            .what());
-  };
-  visit_scenes(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
-    for (const char* load : {"tip_force_n", "tip_torque_nm", "loads"}) {
-      if (scene["type"] == Lattice::name && load == std::string("tip_force_n")) continue;  // at centres of segments
-      if ((std::string(load) == "loads" && has_item(scene["loads"])) || may_be_nonzero(scene.value(load, Json())))
-        warn(member(path, load), "the rest shape under a point load depends on time.step_s, most of all near buckling");
-    }
-    if (const std::string twist = what_twists(scene, path); !twist.empty())
-      warn(twist,
-           "a rod that is twisted or spun sags or lags up to 30 times too far unless time.step_s is as short as 0.002",
-           " and, for spin, \"integrator\": \"bdf2\"");
-  });
-  return warnings;
 }
 
 }  // namespace rodsweep

@@ -69,6 +69,20 @@ TEST_CASE("what twists or spins a rod in steps that do not balance momentum is w
   CHECK(job_of(with("/scene/tip_motion", R"({"duration_s": 1, "displacement_m": [-0.1, 0, 0]})")).warnings.empty());
 }
 
+TEST_CASE("a load that jumps within a step of BDF2 is warned of by its time") {
+  const auto loaded = [](const char* times, const char* integrator) {
+    Json job = with("/time/balance", "true", with("/time/integrator", integrator));
+    job["scene"]["loads"] = Json::array({{{"at_m", {1, 0, 0}}, {"force_n", {0, 1, 0}}, {"factors", {1, 1, 0}}}});
+    job["scene"]["loads"][0]["times_s"] = Json::parse(times);
+    return job;
+  };
+  check_warning(loaded("[0, 1, 1.001]", "\"bdf2\""),
+                {"scene.loads[0].times_s[2]: the load jumps within a step of 0.02 s", "half a step too long"});
+  check_warning(loaded("[0, 1, 1.001]", R"({"grid": ["euler", "bdf2"]})"), {"scene.loads[0].times_s[2]: "});
+  CHECK(job_of(loaded("[0, 1, 1.1]", "\"bdf2\"")).warnings.empty());
+  CHECK(job_of(loaded("[0, 1, 1.001]", "\"euler\"")).warnings.empty());
+}
+
 TEST_CASE("no job of the project has a value that is not plausible") {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(RODSWEEP_JOBS)) {
     if (entry.path().extension() != ".json" || entry.path().filename() == "schema.json") continue;
