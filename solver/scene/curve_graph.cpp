@@ -49,6 +49,10 @@ class Places {
       offset_[i] += point - points_[i];
       return found;
     }
+    return add(point);
+  }
+  /// A number of its own.
+  int add(const Vector3& point) {
     points_.push_back(point);
     offset_.push_back(Vector3::Zero());
     count_.push_back(1);
@@ -130,7 +134,8 @@ Line line_of(const Curve& curve, double radius, Interpolation interpolation) {
   const auto given = [&](std::size_t i) {
     double parameter = 0;
     if (out.spline)
-      parameter = closed && i == last ? out.spline->max_parameter() : out.spline->parameter_at_point(i + (closed ? 0 : 1));
+      parameter =
+          closed && i == last ? out.spline->max_parameter() : out.spline->parameter_at_point(i + (closed ? 0 : 1));
     return Sample{curve.points[i], curve.radii.empty() ? radius : curve.radii[i], static_cast<int>(i), parameter};
   };
   out.samples.push_back(given(0));
@@ -251,7 +256,10 @@ Joined join(std::vector<Curve>& curves, double join_m) {
   Joined out{Places(tolerance), {}};
   for (const Curve& curve : curves) {
     std::vector<int>& own = out.numbers.emplace_back();
-    for (const Vector3& point : curve.points) own.push_back(out.places.number_of(point));
+    for (const Vector3& point : curve.points) {
+      const bool turns_back = curve.points.size() == 3 && own.size() == 2 && out.places.find(point) == own.front();
+      own.push_back(turns_back ? out.places.add(point) : out.places.number_of(point));
+    }
   }
   for (std::size_t c = 0; c < curves.size(); ++c) {
     for (std::size_t i = 0; i < curves[c].points.size(); ++i)

@@ -1,8 +1,8 @@
 // Curves as a graph: their points joined to nodes where curves meet, and the rest cut into edges, each of which becomes a
 // segment.
 //
-// Points of curves that are within a tolerance of each other move to their middle and are one node; also the ends of a
-// closed curve. So are points at which a curve is held, and all points of a curve without a spline. Between two nodes a
+// Points within a tolerance of each other move to their middle and are one node; also the ends of a curve that is closed
+// by them, of more than three points. So are held points, and all points of a curve without a spline. Between two nodes a
 // curve is cut into equal pieces, straight or along a centripetal Catmull-Rom spline through its points (Barry & Goldman
 // 1988). A piece between two nodes of three or more edges is cut in two, one from a node to itself in three.
 #pragma once
