@@ -1,10 +1,15 @@
 #include "runner/command/launch.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -13,6 +18,8 @@
 #include <vector>
 
 #include "runner/command/next_line.hpp"
+#include "runner/dispatch/stop_signal.hpp"
+#include "runner/file/durable.hpp"
 #include "runner/text/beside_program.hpp"
 
 namespace rodsweep {
@@ -23,6 +30,53 @@ std::vector<std::string> own_arguments() {
   std::vector<std::string> arguments;
   for (std::string word; std::getline(in, word, '\0');) arguments.push_back(word);
   return arguments;
+}
+
+volatile std::sig_atomic_t mpirun = 0;
+
+/// While it lives, the signals that request a stop go to mpirun. They are blocked until unblock().
+class ForwardedSignals {
+ public:
+  ForwardedSignals() {
+    sigset_t all;
+    sigemptyset(&all);
+    struct sigaction action {};
+    action.sa_handler = [](int signal) { kill(mpirun, signal); };
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    for (const int signal : stop_signals) {
+      struct sigaction before {};
+      sigaction(signal, nullptr, &before);
+      if (signal == SIGHUP && before.sa_handler == SIG_IGN) continue;  // nohup
+      sigaddset(&all, signal);
+      sigaction(signal, &action, nullptr);
+      forwarded_.push_back(signal);
+    }
+    sigprocmask(SIG_BLOCK, &all, &mask_);
+  }
+  void unblock() const { sigprocmask(SIG_SETMASK, &mask_, nullptr); }
+  /// For the process that becomes mpirun.
+  void end() const {
+    for (const int signal : forwarded_) std::signal(signal, SIG_DFL);
+    unblock();
+  }
+
+ private:
+  std::vector<int> forwarded_;
+  sigset_t mask_;
+};
+
+/// In the child process. A group of its own keeps the terminal's Ctrl-C from mpirun, which would get it twice.
+[[noreturn]] void exec_mpirun(const std::vector<char*>& arguments, int output, const ForwardedSignals& forwarded) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  setpgid(0, 0);
+  std::signal(SIGTTOU, SIG_IGN);  // it may write to the terminal
+  dup2(output, STDOUT_FILENO);
+  dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
+  forwarded.end();
+  execvp(arguments[0], arguments.data());
+  Console(true).error(fmt::format("mpirun cannot be started for --workers: {}", std::strerror(errno)));
+  std::_Exit(static_cast<int>(ExitCode::user_error));
 }
 
 }  // namespace
@@ -45,7 +99,7 @@ std::string separate_processes_text(int ranks) {
   return "";
 }
 
-void launch(int ranks) {
+ExitCode launch(int ranks, Console& console) {
   std::vector<std::string> words;
   const std::string settings = beside_program({"../share/rodsweep/mpi-env.sh", "../cmake/mpi-env.sh"});
   if (!settings.empty()) words.push_back(settings);
@@ -55,8 +109,26 @@ void launch(int ranks) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  execvp(arguments[0], arguments.data());
-  throw std::runtime_error(fmt::format("mpirun cannot be started for --workers: {}", std::strerror(errno)));
+
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw std::runtime_error(fmt::format("mpirun cannot be started for --workers: {}", std::strerror(errno)));
+  const Descriptor output(ends[0]);
+  Descriptor input(ends[1]);
+  const ForwardedSignals forwarded;
+  mpirun = fork();
+  if (mpirun == 0) exec_mpirun(arguments, input.number(), forwarded);
+  if (mpirun < 0)
+    throw std::runtime_error(fmt::format("mpirun cannot be started for --workers: {}", std::strerror(errno)));
+  forwarded.unblock();
+  input = Descriptor();
+  std::array<char, 1 << 12> block{};
+  for (ssize_t count; (count = read(output.number(), block.data(), block.size())) != 0;)
+    if (count > 0) console.raw_result({block.data(), static_cast<std::size_t>(count)});
+  int status = 0;
+  while (waitpid(mpirun, &status, 0) < 0 && errno == EINTR) {
+  }
+  return static_cast<ExitCode>(WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
 }
 
 }  // namespace rodsweep

@@ -3,6 +3,9 @@
 
 #include <string>
 
+#include "runner/command/exit_codes.hpp"
+#include "runner/terminal/console.hpp"
+
 namespace rodsweep {
 
 /// Whether mpirun, srun or another launcher started this process as a rank.
@@ -12,8 +15,9 @@ bool is_launched();
 /// if the `ranks` of this world are all that it started.
 std::string separate_processes_text(int ranks);
 
-/// Replaces this process by mpirun with `ranks` ranks of it, all with the arguments of this process. Settings of Open MPI
-/// for one machine are those of mpi-env.sh. Throws std::runtime_error if mpirun cannot be started.
-[[noreturn]] void launch(int ranks);
+/// Runs mpirun with `ranks` ranks of this program, all with the arguments of this process, and returns its exit code.
+/// Settings of Open MPI for one machine are those of mpi-env.sh. mpirun gets the signals that request a stop. Its
+/// standard output is printed here, because mpirun ignores failed writes.
+ExitCode launch(int ranks, Console& console);
 
 }  // namespace rodsweep

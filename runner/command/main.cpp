@@ -98,7 +98,7 @@ ExitCode start(const PrintedText& answer, Console& console) {
 
 ExitCode start(const RunOptions& options, Console& console) {
   if (options.workers.value_or(1) > 1 && !is_launched())
-    launch(ranks_of(options, read_job(options.job, MissingFiles::accepted)));
+    return launch(ranks_of(options, read_job(options.job, MissingFiles::accepted)), console);
   const MpiSession mpi;
   try {
     return execute(options, mpi, console);
@@ -138,6 +138,7 @@ int main(int argc, char** argv) {
   occupy_standard_descriptors();
   provide_home();
   std::signal(SIGPIPE, SIG_IGN);  // a closed reader must not end a sweep
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes (ulimit -f) is an error as of a full disk
   Console console(is_first_rank());
   ExitCode code = run_program(argc, argv, console);
   const int failure = console.close();

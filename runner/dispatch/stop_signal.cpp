@@ -27,15 +27,15 @@ StopSignal::StopSignal() {
   action.sa_sigaction = note;
   action.sa_flags = SA_SIGINFO | SA_RESTART;  // a signal must not fail a write to the results file
   sigemptyset(&action.sa_mask);
-  for (std::size_t i = 0; i < signals_.size(); ++i) {
-    sigaction(signals_[i], nullptr, &before_[i]);
-    const bool ignored = signals_[i] == SIGHUP && before_[i].sa_handler == SIG_IGN;
-    if (!ignored) sigaction(signals_[i], &action, nullptr);
+  for (std::size_t i = 0; i < stop_signals.size(); ++i) {
+    sigaction(stop_signals[i], nullptr, &before_[i]);
+    const bool ignored = stop_signals[i] == SIGHUP && before_[i].sa_handler == SIG_IGN;
+    if (!ignored) sigaction(stop_signals[i], &action, nullptr);
   }
 }
 
 StopSignal::~StopSignal() {
-  for (std::size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &before_[i], nullptr);
+  for (std::size_t i = 0; i < stop_signals.size(); ++i) sigaction(stop_signals[i], &before_[i], nullptr);
 }
 
 int StopSignal::received() const { return first_signal; }

@@ -10,6 +10,8 @@
 
 namespace rodsweep {
 
+inline constexpr std::array stop_signals{SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGXCPU, SIGHUP};
+
 class StopSignal {
  public:
   StopSignal();
@@ -21,8 +23,7 @@ class StopSignal {
   int received() const;
 
  private:
-  static constexpr std::array signals_{SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGXCPU, SIGHUP};
-  std::array<struct sigaction, signals_.size()> before_{};
+  std::array<struct sigaction, stop_signals.size()> before_{};
 };
 
 /// "SIGTERM", for messages.

@@ -129,7 +129,13 @@ void start_python() {
 
 /// "ValueError: TEXT (my_guess.py:12 in propose)"
 std::string text_of(const py::error_already_set& error) {
-  const auto text = [](const py::handle& object) { return py::str(object).cast<std::string>(); };
+  const auto text = [](const py::handle& object) -> std::string {
+    try {
+      return py::str(object).attr("encode")("utf-8", "replace").cast<std::string>();
+    } catch (const py::error_already_set&) {
+      return "(its text cannot be shown: __str__ failed)";
+    }
+  };
   std::string places;
   if (error.trace())
     for (const py::handle frame : py::module_::import("traceback").attr("extract_tb")(error.trace())) {

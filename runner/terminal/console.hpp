@@ -1,5 +1,5 @@
 // The program's output: results on stdout, progress and warnings on stderr. Only one rank prints.
-// close() returns the first error on stdout; errors on stderr are ignored.
+// close() returns the first error on stdout; errors on stderr are ignored. Text other than raw is made printable().
 // Detects whether stderr is a terminal, also through mpirun's pipe between rank and terminal; respects NO_COLOR and
 // TERM=dumb.
 #pragma once
@@ -21,6 +21,7 @@ class Console {
   void status(std::string_view text);  ///< replaces the status line at the bottom of a live terminal; "" removes it
 
   bool live() const { return live_; }  ///< stderr is a terminal, so status() has an effect
+  int columns() const;                 ///< the terminal's width; 0: not known
 
   /// Closes stdout. Returns 0 or the errno of the first failed write; later results were not written.
   int close();

@@ -22,6 +22,13 @@ std::string bar(double fraction) {
 
 }  // namespace
 
+std::string progress_line(double fraction, const std::string& text, int columns) {
+  std::string line = bar(fraction) + " " + text;
+  const auto most = static_cast<std::size_t>(std::max(columns, 1) - 1);  // terminals wrap after the last column
+  if (columns == 0 || line.size() <= most) return line;
+  return text.substr(0, most);
+}
+
 ProgressLine::ProgressLine(Console& console, Clock::time_point now) : console_(&console), pause_(first_log_pause) {
   if (console.live()) pause_ = bar_pause;
   next_ = now + pause_;
@@ -29,7 +36,7 @@ ProgressLine::ProgressLine(Console& console, Clock::time_point now) : console_(&
 
 void ProgressLine::show(Clock::time_point now, double fraction, const std::string& text) {
   if (console_->live()) {
-    console_->status(bar(fraction) + " " + text);
+    console_->status(progress_line(fraction, text, console_->columns()));
   } else {
     console_->note(text);
     pause_ = std::min<Clock::duration>(pause_ + pause_ / 2, longest_log_pause);

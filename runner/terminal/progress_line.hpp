@@ -9,6 +9,9 @@
 
 namespace rodsweep {
 
+/// A bar and the text, or what of the text is narrower than this many columns; 0: any width.
+std::string progress_line(double fraction, const std::string& text, int columns);
+
 class ProgressLine {
  public:
   using Clock = std::chrono::steady_clock;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/nowide/utf/convert.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -62,13 +61,6 @@ std::size_t characters(std::string_view text) {
 
 std::string json_text(const nlohmann::ordered_json& value, int indent) {
   return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-std::string printable(std::string_view text) {
-  std::string shown = boost::nowide::utf::convert_string<char>(text.data(), text.data() + text.size());
-  const auto is_control = [](unsigned char c) { return c != '\n' && c != '\t' && (c < 0x20 || c == 0x7f); };
-  std::replace_if(shown.begin(), shown.end(), is_control, ' ');
-  return shown;
 }
 
 }  // namespace rodsweep

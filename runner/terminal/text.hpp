@@ -17,7 +17,5 @@ std::string shell_quoted(std::string_view word);                 ///< quoted for
 std::string csv_text(std::string_view text);                     ///< quoted as a CSV cell if necessary (RFC 4180)
 std::size_t characters(std::string_view text);                   ///< number of UTF-8 characters
 std::string json_text(const nlohmann::ordered_json& value, int indent = 2);  ///< invalid UTF-8: U+FFFD
-/// Control characters other than newline and tab become blanks, invalid UTF-8 becomes U+FFFD.
-std::string printable(std::string_view text);
 
 }  // namespace rodsweep

@@ -1,7 +1,11 @@
 #include "solver/plugin/plugin.hpp"
 
 #include <dlfcn.h>
+#include <link.h>
 
+#include <algorithm>
+#include <cstring>
+#include <fstream>
 #include <vector>
 
 #include "solver/rod/rod_arrays.hpp"
@@ -19,11 +23,31 @@ rodsweep_rod view(const RodArrays& rod) {
           rod.mass_kg.data()};
 }
 
+/// The size that an ELF file must have for its segments and tables; 0 if it is another file.
+std::uintmax_t least_size(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  ElfW(Ehdr) header{};
+  file.read(reinterpret_cast<char*>(&header), sizeof header);
+  if (!file || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_phentsize != sizeof(ElfW(Phdr))) return 0;
+  std::uintmax_t size = header.e_phoff + std::uintmax_t{header.e_phnum} * header.e_phentsize;
+  size = std::max<std::uintmax_t>(size, header.e_shoff + std::uintmax_t{header.e_shnum} * header.e_shentsize);
+  file.seekg(static_cast<std::streamoff>(header.e_phoff));
+  ElfW(Phdr) segment{};
+  for (int i = 0; i < header.e_phnum && file.read(reinterpret_cast<char*>(&segment), sizeof segment); ++i)
+    size = std::max<std::uintmax_t>(size, segment.p_offset + segment.p_filesz);
+  return size;
+}
+
 }  // namespace
 
 Plugin::Plugin(const PluginSource& source) : name_(source.name) {
   // Without a slash dlopen() would search the system's folders.
   const std::filesystem::path path = std::filesystem::absolute(source.library);
+  std::error_code unreadable;
+  const std::uintmax_t size = std::filesystem::file_size(path, unreadable), least = least_size(path);
+  if (!unreadable && size < least)  // dlopen() would map what is not there, and end the process
+    throw error("is incomplete: it has " + std::to_string(size) + " of " + std::to_string(least) +
+                " bytes: compile or copy it again");
   handle_ = std::shared_ptr<void>(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL), [](void* handle) {
     if (handle) dlclose(handle);
   });

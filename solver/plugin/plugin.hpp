@@ -9,6 +9,7 @@
 
 #include "solver/guess/initial_guess.hpp"
 #include "solver/plugin/plugin.h"
+#include "solver/plugin/printable.hpp"
 
 namespace rodsweep {
 
@@ -29,7 +30,7 @@ class Plugin {
   explicit Plugin(const PluginSource& source);
   const rodsweep_plugin_functions& functions() const { return *functions_; }
   /// An error of the library, with its name.
-  PluginError error(const std::string& text) const { return PluginError(name_ + ": " + text); }
+  PluginError error(const std::string& text) const { return PluginError(printable(name_ + ": " + text)); }
 
  private:
   std::string name_;

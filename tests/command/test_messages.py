@@ -1,11 +1,16 @@
 #!/usr/bin/python3
 """Messages for a mistyped command, and for a valid job whose values or files need attention."""
 
+import fcntl
 import json
 import os
+import pty
 import re
+import select
 import shutil
+import struct
 import subprocess
+import termios
 import unittest
 
 from program import ALL_DONE, DATA, ROD, RODSWEEP, USER_ERROR, Case, rodsweep, sweep, write_job
@@ -84,6 +89,33 @@ class Surroundings(Case):
                 done = rodsweep("validate", name + ".json")
                 self.assertEqual(done.returncode, USER_ERROR)
                 self.assertTrue(all(c.isprintable() or c == "\n" for c in done.stderr), done.stderr)
+
+    def test_scripts_print_in_any_encoding(self):
+        path = sweep("plain")
+        for encoding in ("latin-1", "ascii"):
+            said = subprocess.run([RODSWEEP, "summary", path], env={**os.environ, "PYTHONIOENCODING": encoding},
+                                  stdin=subprocess.DEVNULL, capture_output=True, check=False)
+            self.assertEqual((said.returncode, said.stderr), (ALL_DONE, b""))
+            self.assertIn("?b", said.stdout.decode(encoding))    # of the norm of b
+        self.assertIn("‖b", self.said("summary", path))
+
+    def test_a_progress_line_fits_its_terminal(self):
+        job = write_job("narrow", samples=40, time={"step_s": 0.02, "steps": 60})
+        ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("4H", 24, 30, 0, 0))
+        for words in (("-o", "narrow-1.h5"), ("-n", "2", "-o", "narrow-2.h5")):
+            with subprocess.Popen([RODSWEEP, "run", job, *words], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                  stderr=theirs, env={**os.environ, "TERM": "xterm"}) as process:
+                shown = b""
+                while process.poll() is None:
+                    while select.select([ours], [], [], 0.05)[0]:
+                        shown += os.read(ours, 4096)
+            lines = [line for line in re.split(r"\r\x1b\[K|\r?\n", shown.decode()) if " of 80 tasks" in line]
+            lines = [line for line in lines if not line.startswith("rodsweep: ")]
+            self.assertTrue(lines, shown)
+            self.assertLess(max(map(len, lines)), 30)
+        os.close(ours)
+        os.close(theirs)
 
     def test_a_path_that_is_not_utf8_is_still_json(self):
         path = os.fsdecode(b"odd-\xff.h5")

@@ -60,6 +60,40 @@ class Plugin(InAFolder):
             self.assertIn("guesses[1].plugin.library: ", error)
             self.assertIn(words, error)
 
+    def test_a_library_that_was_cut_off_anywhere_is_refused(self):
+        with open("mine.so", "rb") as file:
+            whole = file.read()
+        for size in (0, 30, 64, 1000, len(whole) // 4, len(whole) // 2, len(whole) - 1):
+            with self.subTest(size=size):
+                with open("cut.so", "wb") as file:
+                    file.write(whole[:size])
+                error = self.ran("validate", self.job({"plugin": {"library": "cut.so"}}), code=2).stderr
+                self.assertRegex(error, "cut.so: (is incomplete: it has|cannot be loaded: )")
+
+    def test_its_text_reaches_no_terminal_and_no_file_raw(self):
+        with open("rude.c", "w", encoding="utf-8") as file:
+            file.write(r"""
+#include "rodsweep/plugin.h"
+#include <string.h>
+static void* create(const char* o, const rodsweep_rod* r, int n, char* e) { static int one; return &one; }
+static void destroy(void* p) {}
+static int propose(void* p, const rodsweep_system* s, double* x, int* n, char* e) {
+  strcpy(e, "\x1b]0;mine\a\x1b[31mred \xff\xc2\x9b"); return -1;
+}
+const rodsweep_plugin_functions* rodsweep_plugin(void) {
+  static const rodsweep_plugin_functions all = {RODSWEEP_PLUGIN_VERSION, create, destroy, propose, 0, 0, 0};
+  return &all;
+}
+""")
+        os.makedirs("include/rodsweep")
+        shutil.copy(os.path.join(os.environ["SOURCE_DIR"], "solver", "plugin", "plugin.h"), "include/rodsweep")
+        subprocess.run(["cc", "-shared", "-fPIC", "-I", "include", "rude.c", "-o", "rude.so"], check=True)
+        text = "plug-in rude.so: \\x1b]0;mine\\x07\\x1b[31mred \ufffd\\x9b"
+        self.assertIn(text, self.ran("run", self.job({"plugin": {"library": "rude.so"}}), "-o", "s.h5", code=3).stdout)
+        with h5py.File("s.h5") as file:
+            self.assertEqual(file["/tasks/message"][0].decode(), text)
+        self.assertIn(text, self.said("status", "s.h5"))
+
     def test_a_sweep_is_not_resumed_with_another_library(self):
         self.ran("run", self.job({"plugin": {"library": "mine.so"}}), "-o", "s.h5")
         with open("mine.so", "ab") as file:

@@ -61,6 +61,13 @@ class Python(InAFolder):
     def new(self, kind, name):
         subprocess.run([os.path.join(ANALYSIS, "new.py"), kind, name], check=True, capture_output=True)
 
+    def test_an_exception_without_a_text_is_named(self):
+        rude = "\nclass Rude(Exception):\n    def __str__(self): return 1 / 0\n"
+        said = self.error(guess("def propose(self, system): raise Rude") + rude)
+        self.assertRegex(said, r"mine\.py: Rude: .*__str__ failed.* \(mine\.py:4 in propose\)")
+        said = self.error(guess(r"def propose(self, system): raise ValueError('\ud800 \x1b[31m')"))
+        self.assertIn(r"ValueError: ? \x1b[31m (mine.py", said)
+
     def test_the_mean_of_one_solution_is_the_previous_one(self):
         self.new("guess", "mine.py")
         mean = {"python": {"file": "mine.py", "options": "1"}}

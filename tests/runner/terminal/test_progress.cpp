@@ -4,13 +4,16 @@
 
 #include "runner/command/sweep_summary.hpp"
 #include "runner/terminal/progress.hpp"
+#include "runner/terminal/progress_line.hpp"
 #include "runner/terminal/text.hpp"
+#include "solver/plugin/printable.hpp"
 
 using namespace rodsweep;
 
 namespace test_progress {
 
 using Catch::Matchers::EndsWith;
+using Catch::Matchers::StartsWith;
 using std::chrono::seconds;
 const Progress::Clock::time_point start{};
 
@@ -95,6 +98,31 @@ TEST_CASE("the summary of a shard counts its own tasks, and says how the shards 
         "next, when all shards are done: build/rodsweep merge results/my-*of4.h5 -o results/my.h5");
   CHECK_THAT(summary("other.h5", dispatch_of(4, 0, 0)), EndsWith("build/rodsweep merge SHARDS... -o FILE"));
   CHECK_THAT(summary("my-2of4.h5", dispatch_of(3, 0, 1)), EndsWith("results: my-2of4.h5"));
+}
+
+TEST_CASE("a progress line never reaches the last column of its terminal") {
+  const std::string text = "12 of 90 tasks (13 %), 2/s, 39.0 s left";
+  const std::string whole = "[############............] " + text;
+  const auto columns_of = [](const std::string& line) { return static_cast<int>(line.size()) + 1; };
+  CHECK(progress_line(0.5, text, 0) == whole);  // the width is not known
+  CHECK(progress_line(0.5, text, 120) == whole);
+  CHECK(progress_line(0.5, text, columns_of(whole)) == whole);
+  for (int columns = 1; columns < columns_of(whole); ++columns) {
+    CAPTURE(columns);
+    const std::string line = progress_line(0.5, text, columns);
+    CHECK(columns_of(line) <= columns);
+    CHECK_THAT(text, StartsWith(line));
+  }
+  CHECK(progress_line(0.5, text, columns_of(text)) == text);
+}
+
+TEST_CASE("control characters are shown by their number, and invalid UTF-8 by U+FFFD") {
+  CHECK(printable("plain, \xC3\xA4\xE2\x82\xAC\ttab\nline") == "plain, \xC3\xA4\xE2\x82\xAC\ttab\nline");
+  CHECK(printable("\x1b[31mred\r\x07\x7f") == "\\x1b[31mred\\x0d\\x07\\x7f");
+  CHECK(printable(std::string_view("a\0b", 3)) == "a\\x00b");
+  CHECK(printable("\xC2\x9B"
+                  "31m\xC2\xA0") == "\\x9b31m\xC2\xA0");  // a control sequence of one character
+  CHECK(printable("\xFFmore \xC2") == "\xEF\xBF\xBDmore \xEF\xBF\xBD");
 }
 
 TEST_CASE("durations and sizes are short and never rounded to a unit too large") {
