@@ -241,13 +241,6 @@ std::string ended_text(const SweepSummary& summary, const RunOptions& options, i
   const Dispatch& dispatch = summary.dispatch;
   RunOptions again = options;
   again.resume = true;
-  if (summary.slow_start_s) {
-    again.time_limit_s.reset();
-    return fmt::format(
-        "no task was begun: planning the tasks and opening the file took {}, the time limit is {}. To continue, raise "
-        "--time-limit (under Slurm sbatch --time): {}",
-        duration_text(*summary.slow_start_s), duration_text(*options.time_limit_s), run_line(again, ranks));
-  }
   if (dispatch.too_long) {
     again.time_limit_s.reset();
     return fmt::format(
@@ -256,6 +249,13 @@ std::string ended_text(const SweepSummary& summary, const RunOptions& options, i
         duration_text(*options.time_limit_s), dispatch.too_long->index,
         dispatch.too_long_s > dispatch.too_long->tried_s ? "about" : "more than", duration_text(dispatch.too_long_s),
         run_line(again, ranks));
+  }
+  if (summary.slow_start_s) {
+    again.time_limit_s.reset();
+    return fmt::format(
+        "planning the tasks and opening the file took {}, the time limit is {}, so at most one task was run. To "
+        "continue, raise --time-limit (under Slurm sbatch --time): {}",
+        duration_text(*summary.slow_start_s), duration_text(*options.time_limit_s), run_line(again, ranks));
   }
   if (dispatch.signal != 0) return stopped_text(dispatch.signal, again, ranks);
   if (dispatch.left == summary.too_large.tasks)
@@ -289,11 +289,12 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   const Provenance provenance = provenance_of(options, mpi, where);
   std::optional<Clock::time_point> first_verified;
   const auto verifying = [&] {
-    constexpr double most_of_limit = 0.25;
+    constexpr double most_of_rest = 0.25;
     if (!first_verified) first_verified = Clock::now();
-    const Seconds took = Clock::now() - *first_verified;
+    const Seconds took = Clock::now() - *first_verified, planned = *first_verified - begin;
     if (signal.received() != 0) return Verify::stop;
-    return options.time_limit_s && took.count() > most_of_limit * *options.time_limit_s ? Verify::enough : Verify::on;
+    const double rest = options.time_limit_s.value_or(INFINITY) - planned.count();
+    return took.count() > most_of_rest * rest ? Verify::enough : Verify::on;
   };
   std::optional<ResultsFile> opened = collectively(mpi.world(), [&] {
     return continues ? ResultsFile::resume(path, plan, provenance, mpi.world(),

@@ -53,7 +53,7 @@ Master::Step Master::step() {
   const bool traffic = receive();
   if (const int signal = signal_(); signal != 0) stop(signal);
   find_lost();
-  if (timeouts_.time.is_over(now_() - begin_)) stop(0);
+  if (is_late()) stop(0);
   if (!stopping_) assign_tasks();
 
   const TimePoint now = now_();
@@ -207,14 +207,35 @@ void Master::assign_tasks() {
 }
 
 bool Master::next_fits() {
-  if (next_ >= pool_.size() || nothing_fits_) return false;
+  if (next_ >= pool_.size()) return false;
+  if (nothing_fits_) return granted_ && !any_begun_;
   const TimeBudget::Seconds since_begin = now_() - begin_;
   const auto first = pool_.begin() + static_cast<std::ptrdiff_t>(next_);
   const auto fits =
       std::find_if(first, pool_.end(), [&](const PendingTask& task) { return timeouts_.time.fits(task, since_begin); });
   nothing_fits_ = fits == pool_.end();
-  if (!nothing_fits_) std::rotate(first, fits, fits + 1);
-  return !nothing_fits_;
+  if (nothing_fits_) return !any_begun_ && grant_one();
+  std::rotate(first, fits, fits + 1);
+  return true;
+}
+
+/// Makes the cheapest task that a whole limit has time for the next one. False if there is none.
+bool Master::grant_one() {
+  const auto first = pool_.begin() + static_cast<std::ptrdiff_t>(next_);
+  auto granted = pool_.end();
+  for (auto task = first; task != pool_.end(); ++task)
+    if (timeouts_.time.ever_fits(*task) &&
+        (granted == pool_.end() || std::tuple(task->crashes, task->cost) < std::tuple(granted->crashes, granted->cost)))
+      granted = task;
+  if (granted == pool_.end()) return false;
+  std::rotate(first, granted, granted + 1);
+  granted_ = now_();
+  return true;
+}
+
+bool Master::is_late() const {
+  if (granted_) return any_begun_ && (in_flight_ == 0 || now_() - *granted_ > timeouts_.time.whole());
+  return any_begun_ && timeouts_.time.is_over(now_() - begin_);
 }
 
 void Master::find_too_long() {
@@ -264,6 +285,7 @@ void Master::assign(int rank) {
     assign.add(task.index);
   } while (first.batch >= 0 && assign.count < Assign::most && next_ < pool_.size() &&
            pool_[next_].batch == first.batch && pool_[next_].cost == first.cost);
+  any_begun_ = true;
   channel_->send(rank, assign);
 }
 

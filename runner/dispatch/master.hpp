@@ -15,8 +15,9 @@
 // After a signal to any rank, no more tasks are assigned and running ones are abandoned. Workers that do not report
 // this within the drain timeout are lost.
 // With a time limit, tasks that would probably exceed it are not started (time_budget.hpp), and running tasks are
-// abandoned when it expires. Each Assign is answered by one Report per task; workers are dismissed (Finish) after the
-// last Report.
+// abandoned when it expires. If planning and opening the file leave no time for any task, one task runs all the same,
+// for at most the time limit, so that every run gets on.
+// Each Assign is answered by one Report per task; workers are dismissed (Finish) after the last Report.
 #pragma once
 
 #include <array>
@@ -123,6 +124,8 @@ class Master {
   bool any_worker_left() const;
   bool may_hold_another(const Worker& worker) const;
   bool next_fits();
+  bool grant_one();
+  bool is_late() const;
   void find_too_long();
   bool next_runs_alone() const;
 
@@ -137,7 +140,8 @@ class Master {
   double pool_cost_ = 0;
   std::vector<Worker> workers_;  ///< by rank; the master's entry is unused
   std::int64_t in_flight_ = 0;
-  bool stopping_ = false, nothing_fits_ = false;
+  bool stopping_ = false, nothing_fits_ = false, any_begun_ = false;
+  std::optional<TimePoint> granted_;  ///< when one task was granted although the time is over
   std::vector<PendingTask> abandoned_;
   TimePoint begin_, stepped_, stopped_;
   Dispatch dispatch_;

@@ -101,4 +101,53 @@ TEST_CASE("a sweep whose tasks ran for a whole limit in vain says which is the l
   CHECK(end.too_long_s == Approx(1));
 }
 
+TEST_CASE("a run whose start took the time limit runs one task, the cheapest that a whole limit has time for") {
+  Timeouts limited;
+  limited.time = TimeBudget(Seconds(-2), Seconds(15));
+  limited.time.learn(1, Seconds(1));
+  std::vector<PendingTask> tasks = tasks_of_cost({40, 3, 2, 1});
+  tasks[3].crashes = 1;
+  Sweep sweep(2, tasks, limited);
+  Inbox one(sweep.network[1]), other(sweep.network[2]);
+  sweep.master.step();
+  sweep.master.step();
+  REQUIRE(one.assigned() == std::vector<std::int64_t>{2});
+  test::HandClock::pass(Seconds(3));
+  sweep.master.step();
+  CHECK(one.assigned().empty());
+  CHECK(one.stops == 0);
+  one.report(2);
+  CHECK(sweep.master.step() == Master::Step::finished);
+  CHECK(one.assigned().empty());
+  CHECK(other.assigned().empty());
+  const Dispatch& end = sweep.master.dispatch();
+  CHECK(end.left == 3);
+  CHECK(end.late);
+  CHECK_FALSE(end.too_long);
+}
+
+TEST_CASE("that task too is abandoned after the whole limit, and a task that is too long is not begun") {
+  Timeouts limited;
+  limited.time = TimeBudget(Seconds(1), Seconds(10));
+  limited.time.learn(1, Seconds(1));
+  Sweep sweep(1, tasks_of_cost({9}), limited);
+  Inbox worker(sweep.network[1]);
+  sweep.master.step();
+  REQUIRE(worker.assigned() == std::vector<std::int64_t>{0});
+  test::HandClock::pass(Seconds(9));
+  sweep.master.step();
+  worker.assigned();
+  CHECK(worker.stops == 0);
+  test::HandClock::pass(Seconds(2));
+  sweep.master.step();
+  worker.assigned();
+  CHECK(worker.stops == 1);
+
+  Sweep too_long(1, tasks_of_cost({20}), limited);
+  Inbox idle(too_long.network[1]);
+  CHECK(too_long.master.step() == Master::Step::finished);
+  CHECK(idle.assigned().empty());
+  CHECK(too_long.master.dispatch().too_long);
+}
+
 }  // namespace test_time_budget
