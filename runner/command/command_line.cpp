@@ -207,14 +207,6 @@ CLI::App* add(CLI::App& app, SystemsOptions& systems) {
   return command;
 }
 
-CLI::App* add(CLI::App& app, PackOptions& pack) {
-  CLI::App* command = app.add_subcommand("pack", "Writes a compressed copy of a results file");
-  command->footer(pack_help);
-  command->add_option("FILE", pack.file, "Results file (HDF5)")->required();
-  command->add_option("-o,--output", pack.output, "Copy; never overwritten [FILE-packed.h5]")->type_name("FILE");
-  return command;
-}
-
 CLI::App* add(CLI::App& app, MergeOptions& merge) {
   CLI::App* command = app.add_subcommand("merge", "Merges results files of the same job");
   command->footer(with_exit_codes(merge_help));
@@ -272,12 +264,11 @@ Command parse_command_line(int argc, const char* const* argv) {
   ValidateOptions validate;
   StatusOptions status;
   InfoOptions info;
-  PackOptions pack;
   std::optional<Command> chosen;
   const auto offer = [&](auto&... options) {
     (add(app, options)->callback([&chosen, &options] { chosen = options; }), ...);
   };
-  offer(run, plan, validate, status, info, rerun, systems, pack, merge);
+  offer(run, plan, validate, status, info, rerun, systems, merge);
 
   CLI::App* schema = app.add_subcommand("schema", "Prints the JSON Schema of jobs, for editors");
   schema->footer(schema_help);

@@ -8,7 +8,6 @@
 #include "runner/command/external_command.hpp"
 #include "runner/command/info_command.hpp"
 #include "runner/command/merge_command.hpp"
-#include "runner/command/pack_command.hpp"
 #include "runner/command/plan_command.hpp"
 #include "runner/command/rerun_command.hpp"
 #include "runner/command/run_command.hpp"
@@ -25,7 +24,7 @@ struct PrintedText {
 };
 
 using Command = std::variant<RunOptions, PlanOptions, ValidateOptions, StatusOptions, InfoOptions, RerunOptions,
-                             SystemsOptions, PackOptions, MergeOptions, ExternalCommand, PrintedText>;
+                             SystemsOptions, MergeOptions, ExternalCommand, PrintedText>;
 
 Command parse_command_line(int argc, const char* const* argv);
 

@@ -101,8 +101,8 @@ ExitCode execute(const InfoOptions& options, Console& console) {
   }
   if (verified.damaged.empty()) return ExitCode::ok;
   console.error(
-      fmt::format("{} is damaged: wrong checksum of task{} {}. Run its job with --resume to repeat damaged tasks; for "
-                  "a packed copy, pack the original again",
+      fmt::format("{} is damaged: wrong checksum of task{} {}. Run its job with --resume to repeat damaged tasks; if "
+                  "it is a compressed copy, copy the original again",
                   options.file.native(), verified.damaged.size() == 1 ? "" : "s", fmt::join(verified.damaged, ", ")));
   return ExitCode::damaged;
 }

@@ -40,17 +40,6 @@ herr_t append_description(unsigned, const H5E_error2_t* error, void* text) noexc
   return -1;
 }
 
-/// Collects names from name_at(index, buffer, bytes), which fills the buffer and returns the length.
-template <class NameAt>
-std::vector<std::string> names(hsize_t count, const char* call, NameAt&& name_at) {
-  std::vector<std::string> all(count);
-  for (hsize_t i = 0; i < count; ++i) {
-    all[i].resize(static_cast<std::size_t>(check(name_at(i, nullptr, 0), call)));
-    check(name_at(i, all[i].data(), all[i].size() + 1), call);
-  }
-  return all;
-}
-
 Attribute create_attribute(hid_t object, const char* name, const Datatype& type) {
   const Dataspace scalar(check(H5Screate(H5S_SCALAR), "H5Screate"));
   return Attribute(
@@ -84,6 +73,10 @@ std::string system_reason(const std::string& text) {
   if (begin == std::string::npos) return "";
   const std::size_t end = text.find('\'', begin + mark.size());
   return text.substr(begin + mark.size(), end == std::string::npos ? end : end - begin - mark.size());
+}
+
+PropertyList creation_of(const Dataset& dataset, const std::string& path) {
+  return PropertyList(check(H5Dget_create_plist(dataset.id()), "H5Dget_create_plist", path));
 }
 
 std::string without_padding(const char* text, std::size_t bytes) { return {text, std::find(text, text + bytes, '\0')}; }
@@ -174,29 +167,42 @@ std::vector<hsize_t> extent(const Dataset& dataset, const std::string& path) {
 }
 
 hsize_t value_count(const Dataset& dataset, const std::string& path) {
-  constexpr double densest = 1100, index_bytes = 1 << 16;  // deflate's ratio; unwritten chunks
   const Datatype type(check(H5Dget_type(dataset.id()), "H5Dget_type", path));
-  double bytes = static_cast<double>(H5Tget_size(type.id()));
+  const auto value_bytes = static_cast<double>(H5Tget_size(type.id()));
   hsize_t count = 1;
+  double bytes = value_bytes;
   for (const hsize_t n : extent(dataset, path)) count *= n, bytes *= static_cast<double>(n);
-  if (bytes > densest * (static_cast<double>(H5Dget_storage_size(dataset.id())) + index_bytes))
-    throw Damage(path + " has a shape that is larger than the file");
+  auto stored = static_cast<double>(H5Dget_storage_size(dataset.id()));
+  const PropertyList creation = creation_of(dataset, path);
+  if (H5Pget_layout(creation.id()) == H5D_CHUNKED) {  // a filter may store a chunk in any number of bytes
+    hsize_t chunk[most_axes] = {}, chunks = 0;
+    const int axes = check(H5Pget_chunk(creation.id(), static_cast<int>(most_axes), chunk), "H5Pget_chunk", path);
+    const Dataspace all(check(H5Dget_space(dataset.id()), "H5Dget_space", path));
+    check(H5Dget_num_chunks(dataset.id(), all.id(), &chunks), "H5Dget_num_chunks", path);
+    stored = static_cast<double>(chunks) * value_bytes;
+    for (int axis = 0; axis < axes; ++axis) stored *= static_cast<double>(chunk[axis]);
+  }
+  if (bytes > stored) throw Damage(path + " has a shape that is larger than its data");
   return count;
+}
+
+bool is_contiguous(hid_t file, const std::string& path) {
+  return H5Pget_layout(creation_of(open_dataset(file, path), path).id()) == H5D_CONTIGUOUS;
 }
 
 std::vector<std::string> members(hid_t group) {
   H5G_info_t info;
   check(H5Gget_info(group, &info), "H5Gget_info");
-  return names(info.nlinks, "H5Lget_name_by_idx", [&](hsize_t i, char* name, std::size_t bytes) {
-    return H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, bytes, H5P_DEFAULT);
-  });
-}
-
-std::vector<std::string> attribute_names(hid_t object) {
-  const int count = check(H5Aget_num_attrs(object), "H5Aget_num_attrs");
-  return names(static_cast<hsize_t>(count), "H5Aget_name_by_idx", [&](hsize_t i, char* name, std::size_t bytes) {
-    return H5Aget_name_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, bytes, H5P_DEFAULT);
-  });
+  std::vector<std::string> names(info.nlinks);
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    const auto name_at = [&](char* name, std::size_t bytes) {
+      return check(H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, bytes, H5P_DEFAULT),
+                   "H5Lget_name_by_idx");
+    };
+    names[i].resize(static_cast<std::size_t>(name_at(nullptr, 0)));
+    name_at(names[i].data(), names[i].size() + 1);
+  }
+  return names;
 }
 
 RowDataset::RowDataset(hid_t file, std::string path) : path_(std::move(path)) {
@@ -241,6 +247,21 @@ std::vector<std::string> read_texts(hid_t file, const std::string& path) {
   std::vector<std::string> texts(count);
   for (std::size_t i = 0; i < count; ++i) texts[i] = without_padding(buffer.data() + i * bytes, bytes);
   return texts;
+}
+
+void visit_texts(hid_t file, const std::string& path, std::size_t rows,
+                 const std::function<void(std::size_t, const std::string&)>& visit) {
+  constexpr std::size_t block = 1 << 14;
+  const RowDataset dataset(file, path);
+  if (dataset.rows() != rows || dataset.row_values() != 1) throw Damage(path + " has another shape than other columns");
+  const Datatype type = dataset.type();
+  const std::size_t bytes = text_bytes(type.id(), path);
+  std::vector<char> buffer(std::min(block, rows) * bytes);
+  for (std::size_t begin = 0; begin < rows; begin += block) {
+    const std::size_t count = std::min(block, rows - begin);
+    dataset.read(type.id(), begin, count, buffer.data());
+    for (std::size_t i = 0; i < count; ++i) visit(begin + i, without_padding(buffer.data() + i * bytes, bytes));
+  }
 }
 
 void write_texts(hid_t file, const std::string& path, const std::vector<std::string>& values) {

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -110,11 +111,11 @@ Dataset create_dataset(hid_t file, const std::string& path, hid_t type, const st
 Dataset open_dataset(hid_t file, const std::string& path);
 bool exists(hid_t file, const std::string& path);  ///< also false if a parent group is missing
 std::vector<hsize_t> extent(const Dataset& dataset, const std::string& path);
-/// Number of values. Throws Damage if its storage is too small for them: a damaged extent could exhaust the memory.
+/// Number of values. Throws Damage if fewer are stored: a damaged extent could exhaust the memory.
 hsize_t value_count(const Dataset& dataset, const std::string& path);
+bool is_contiguous(hid_t file, const std::string& path);  ///< false: in chunks, which may be compressed
 
-std::vector<std::string> members(hid_t group);           ///< names, sorted
-std::vector<std::string> attribute_names(hid_t object);  ///< sorted
+std::vector<std::string> members(hid_t group);  ///< names, sorted
 
 /// An open dataset for access to rows [first, first + count); empty if `path` does not exist.
 class RowDataset {
@@ -158,6 +159,9 @@ void write_all(hid_t file, const std::string& path, const std::vector<T>& values
 /// Fixed-length text, without its padding.
 std::vector<std::string> read_texts(hid_t file, const std::string& path);
 void write_texts(hid_t file, const std::string& path, const std::vector<std::string>& values);
+/// Calls visit(row, text) for each row, without all texts in memory. Throws Damage unless there are `rows` rows.
+void visit_texts(hid_t file, const std::string& path, std::size_t rows,
+                 const std::function<void(std::size_t, const std::string&)>& visit);
 std::string read_text_row(hid_t file, const std::string& path, hsize_t row);
 std::string read_text_row(const RowDataset& rows, hsize_t row);
 void write_text_row(hid_t file, const std::string& path, hsize_t row, std::string_view value);

@@ -17,23 +17,22 @@ namespace {
 namespace fs = std::filesystem;
 
 void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
-  const std::vector<std::string> outcomes = hdf5::read_texts(file.id(), "/tasks/outcome");
   const auto run_of_task = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/run");
   const auto seconds = hdf5::read_all<double>(file.id(), "/timing/tasks/elapsed_s");
   const hdf5::RowDataset messages(file.id(), "/tasks/message");  // stays open: its chunks may be compressed
   summary.tasks = static_cast<std::int64_t>(states.size());
-  for (std::size_t task = 0; task < states.size(); ++task) {
-    if (states[task] == 0) continue;
+  hdf5::visit_texts(file.id(), "/tasks/outcome", states.size(), [&](std::size_t task, const std::string& outcome) {
+    if (states[task] == 0) return;
     ++summary.done;
-    ++summary.done_by_outcome[outcomes.at(task)];
+    ++summary.done_by_outcome[outcome];
     if (const auto run = static_cast<std::size_t>(run_of_task.at(task)); run < summary.runs.size()) {
       ++summary.runs[run].tasks;
       if (seconds.at(task) > 0) summary.runs[run].task_seconds += seconds[task];  // NaN: not measured
     }
-    if (outcomes[task] == to_string(TaskOutcome::ok)) continue;
+    if (outcome == to_string(TaskOutcome::ok)) return;
     ++summary.failed;
-    summary.failures.push_back({static_cast<std::int64_t>(task), outcomes[task], hdf5::read_text_row(messages, task)});
-  }
+    summary.failures.push_back({static_cast<std::int64_t>(task), outcome, hdf5::read_text_row(messages, task)});
+  });
   summary.pending = summary.tasks - summary.done;
 }
 
@@ -97,13 +96,12 @@ FileSummary inspect(const fs::path& path) {
   });
 }
 
-Verification verify(const fs::path& path, const std::function<void()>& before_task) {
+Verification verify(const fs::path& path) {
   const TaskReader file(path, TaskReader::Times::left_out);
   Verification result;
   TaskRecord record;
   for (const Task& task : file.tasks()) {
     if (!file.done(task.index)) continue;
-    before_task();
     ++result.checked;
     if (!file.read(task.index, record)) result.damaged.push_back(task.index);
   }

@@ -65,9 +65,8 @@ struct Verification {
   std::vector<std::int64_t> damaged;  ///< tasks with a wrong checksum
 };
 
-/// Reads all data of finished tasks (outside /timing) and compares it with /tasks/checksum. `before_task` may throw.
-Verification verify(
-    const std::filesystem::path& path, const std::function<void()>& before_task = [] {});
+/// Reads all data of finished tasks (outside /timing) and compares it with /tasks/checksum.
+Verification verify(const std::filesystem::path& path);
 
 /// The longest abandoned try of a task.
 struct Try {

@@ -11,7 +11,6 @@
 
 #include "runner/file/file_reading.hpp"
 #include "runner/file/layout.hpp"
-#include "runner/file/pack.hpp"
 #include "runner/file/planned_columns.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/runs.hpp"
@@ -132,19 +131,27 @@ void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& 
   });
 }
 
-void check_plan(const hdf5::File& file, const fs::path& path, const Plan& plan, const char* advice) {
+/// Returns the plan's layout.
+std::vector<Field> check_plan(const hdf5::File& file, const fs::path& path, const Plan& plan, const char* advice) {
   const std::vector<ParameterColumn> parameters = plan.parameters();
   check_hash(file, path, plan, parameters, advice);
-  check_layout(file, path, layout(plan, parameters), advice);
+  std::vector<Field> fields = layout(plan, parameters);
+  check_layout(file, path, fields, advice);
   check_parameters(file, path, plan, parameters, advice);
+  return fields;
 }
 
-void refuse_copies(const hdf5::File& file, const fs::path& path) {
-  if (is_packed(file)) {
-    throw FileError(fmt::format(
-        "{} is a packed copy, which cannot be resumed: resume the original, or run into another file with -o FILE",
-        path.native()));
-  }
+/// Ranks cannot write chunks independently.
+void refuse_chunks(const hdf5::File& file, const fs::path& path, const std::vector<Field>& fields) {
+  for (const Field& field : fields)
+    if (hdf5::exists(file.id(), field.path) && !hdf5::is_contiguous(file.id(), field.path))
+      throw FileError(
+          fmt::format("{} is a compressed copy ({} is stored in chunks), which cannot be resumed: resume the original, "
+                      "decompress the copy with h5repack -f NONE -l CONTI, or run into another file with -o FILE",
+                      path.native(), field.path));
+}
+
+void refuse_single_task(const hdf5::File& file, const fs::path& path) {
   if (hdf5::has_attribute(file.id(), "/job", "rerun_of_task")) {
     throw FileError(
         fmt::format("{} holds only one task of a sweep, from `rodsweep rerun`: resume the file of the sweep, or run "
@@ -175,9 +182,9 @@ ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
     throw FileError(fmt::format("{} cannot be written: {}", path.native(), std::system_category().message(errno)));
   }
   return reading(path, [&] {
-    refuse_copies(file, path);
+    refuse_single_task(file, path);
     check_job(file, path, plan);
-    check_plan(file, path, plan, other_revision);
+    refuse_chunks(file, path, check_plan(file, path, plan, other_revision));
     return ResumePoint{hdf5::read_all<std::uint8_t>(file.id(), "/tasks/state"),
                        hdf5::read_all<std::uint8_t>(file.id(), "/timing/tasks/tries"),
                        static_cast<int>(read_runs(file).size())};

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands from outside: output, files, refusals, exit codes."""
+"""The commands from outside: output, files, refusals. Their exit codes: tests/laws/test_commands.py."""
 
 import csv
 import io
@@ -13,9 +13,11 @@ import unittest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "analysis"))
 import h5py
 import numpy as np
-from program import ALL_DONE, DATA, DIFFER, OUTPUT_LOST, ROD, RODSWEEP, STOPPED, TASKS_FAILED, USER_ERROR, Case, changed, \
+from program import ALL_DONE, DATA, DIFFER, OUTPUT_LOST, ROD, RODSWEEP, STOPPED, TASKS_FAILED, Case, changed, \
     rodsweep, sweep, write_job
 from rodsweep.reading.sweepfile import SweepFile
+
+LONG = "LONG" in os.environ
 
 
 def unfinished():
@@ -131,10 +133,6 @@ class Rerun(Case):
         with h5py.File("elsewhere/moved.h5") as h5:
             self.assertEqual(h5["runs/job"][0].decode(), os.path.abspath("jobs/moved.json"))
 
-    def test_a_packed_file_can_be_rerun_from(self):
-        self.said("pack", sweep(), "-o", "packed.h5")
-        self.assertIn("identical", self.said("rerun", "packed.h5", 0))
-
     def test_mistakes_are_refused_and_nothing_is_overwritten(self):
         self.assert_refused(("rerun", sweep(), 4), "no task 4", "0 to 3")
         with open("mine.h5", "w", encoding="utf-8") as file:
@@ -145,54 +143,43 @@ class Rerun(Case):
         self.said("rerun", sweep(), 1, "-o", "one.h5")
         self.assert_refused(("rerun", "one.h5", 0), "one.h5 ", "task 1 ", "rodsweep rerun")
 
-    def test_a_signal_ends_it_without_a_file(self):
-        path = sweep("endless", samples=1, time={"step_s": 0.02, "steps": 3000}, record={"solves": "summary"},
-                     scene={**ROD, "segments": 200}, task_time_limit_s=0.01)
-        with h5py.File(path, "r+") as h5:  # without the limit, the sweep would take as long as the rerun
-            text = h5["job/text"][()]
-            del h5["job"].attrs["text_checksum"]
-            h5["job/text"][()] = text.replace(b'"task_time_limit_s": 0.01', b'"task_time_limit_s": 0.00')
-        process = subprocess.Popen([RODSWEEP, "rerun", path, "0"], stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.assertIn("task 0: 200 segments", process.stderr.readline())
-        process.send_signal(signal.SIGTERM)
-        _, stderr = process.communicate(timeout=600)
-        self.assertEqual(process.returncode, STOPPED, stderr)
-        self.assertIn("SIGTERM", stderr)
-        self.assertEqual([name for name in os.listdir("results") if name.startswith("endless")], ["endless.h5"])
 
+class Compressed(Case):
+    """A copy by h5repack."""
 
-class Pack(Case):
+    def copy(self, path, *filters):
+        copy = os.path.basename(path)
+        subprocess.run(["h5repack", *filters, path, copy], check=True)
+        return copy
+
     def test_all_readers_take_the_copy_for_the_original(self):
         path = sweep("roomy", samples=10, record={"trajectory_every": 1})
-        said = self.said("pack", path)
-        self.assertRegex(said, r"results/roomy-packed\.h5: [0-9.]+ kB, from [0-9.]+ kB .* 20 finished tasks")
-        packed = "results/roomy-packed.h5"
-        self.assertLess(os.path.getsize(packed), 0.5 * os.path.getsize(path))
-        diff = subprocess.run(["h5diff", path, packed], capture_output=True, text=True)
-        self.assertEqual((diff.returncode, diff.stdout), (0, ""))
+        copy = self.copy(path, "-f", "GZIP=4")
+        self.assertLess(os.path.getsize(copy), os.path.getsize(path))
         for words in (("status",), ("info", "--verify")):
             with self.subTest(words=words):
-                one, other = (self.shown(words[0], file, *words[1:]) for file in (path, packed))
+                one, other = (self.shown(words[0], file, *words[1:]) for file in (path, copy))
                 self.assertEqual({**one, "file": "", "bytes": 0}, {**other, "file": "", "bytes": 0})
-        self.assertEqual(*(self.said("query", file, "--csv") for file in (path, packed)))
-        with SweepFile(path) as a, SweepFile(packed) as b:
-            self.assertEqual(a.swept(), b.swept())
-            np.testing.assert_array_equal(a.results("cg_ratio", np.arange(20)), b.results("cg_ratio", np.arange(20)))
-            for one, other in zip(a.solve_blocks(np.arange(20), ["/solves/iterations"]),
-                                  b.solve_blocks(np.arange(20), ["/solves/iterations"])):
-                np.testing.assert_array_equal(one[2]["/solves/iterations"], other[2]["/solves/iterations"])
+        for words in (("query", "--csv"), ("summary", "--csv"), ("export",)):
+            with self.subTest(words=words):
+                self.assertEqual(*(self.said(words[0], file, *words[1:]) for file in (path, copy)))
+        self.assertIn("identical", self.said("rerun", copy, 0, "-o", "rerun.h5"))
+        self.said("merge", copy, "-o", "merged.h5")
+        self.said("compare", path, "merged.h5")
+        self.assert_refused(("run", "jobs/roomy.json", "-o", copy, "--resume"), "roomy.h5 is a compressed copy (",
+                            "h5repack -f NONE -l CONTI")
 
-    def test_an_unfinished_sweep_is_packed_with_a_warning(self):
-        """Other refusals and packed files: tests/runner/file/test_pack.cpp."""
-        said = rodsweep("pack", unfinished())
-        self.assertEqual(said.returncode, ALL_DONE)
-        self.assertRegex(said.stderr, r"\b3 of 4 tasks .*part\.h5")
-        self.assertEqual(self.shown("status", "part-packed.h5")["pending"], 3)
-
-    def test_a_missing_file_is_refused_and_leaves_nothing(self):
-        self.assert_refused(("pack", "nowhere.h5", "-o", "a.h5"), "nowhere.h5: file not found")
-        self.assertFalse(os.path.exists("a.h5"))
+    @unittest.skipUnless(LONG, "writes 200 MB")
+    def test_a_copy_of_100_mb_is_read(self):
+        path = sweep("large", scene={**ROD, "segments": 100}, samples=1, solve={"method": "direct"}, guesses=[],
+                     time={"step_s": 0.02, "steps": 20_000, "newton_iterations": 1}, record={"trajectory_every": 1})
+        copy = self.copy(path, "-f", "SHUF", "-f", "GZIP=1")
+        with h5py.File(copy) as h5:
+            self.assertGreater(sum(h5["trajectories"][name].nbytes for name in ("position_m", "orientation")), 100e6)
+        self.assertEqual(self.shown("info", copy, "--verify")["verified"], {"checked": 1, "damaged": []})
+        self.said("summary", copy)
+        for file in (path, copy):
+            os.remove(file)
 
 
 class DataSets(Case):
@@ -229,30 +216,7 @@ class DataSets(Case):
 
 
 class Output(Case):
-    """Standard output that is not writable."""
-
-    def every_command(self):
-        path = sweep()
-        yield from ((), ("status", path), ("status", path, "--json"), ("info", path, "--job"), ("info", path, "--verify"),
-                    ("plan", "jobs/small.json"), ("validate", "jobs/small.json"), ("schema",),
-                    ("--version",), ("--help",), ("run", "--help"))
-
-    def without_reader(self, *words, of="stdout", **options):
-        """Runs the program with a closed reader on its output, as after `| head`."""
-        reader, writer = os.pipe()
-        os.close(reader)
-        try:
-            return rodsweep(*words, **{of: writer}, **options)
-        finally:
-            os.close(writer)
-
-    def test_every_command_says_so_and_fails(self):
-        for words in self.every_command():
-            with self.subTest(words=words), open("/dev/full", "w", encoding="utf-8") as full:
-                said = rodsweep(*words, stdout=full)
-                self.assertEqual(said.returncode, OUTPUT_LOST if words else USER_ERROR)
-                if words:  # without words the usage goes to stderr
-                    self.assertIn("No space left on device", said.stderr)
+    """Output that is not writable: see tests/laws/test_commands.py too."""
 
     def test_the_results_of_a_sweep_are_complete_all_the_same(self):
         sweep()
@@ -270,18 +234,50 @@ class Output(Case):
                     self.assertEqual((now["pending"], now["verified"]["damaged"]), (0, []))
                     self.assertEqual(now["runs"][0]["exit_code"], TASKS_FAILED if job == "failing" else ALL_DONE)
 
-    def test_a_reader_that_has_left_ends_it_without_a_word(self):
-        for words in (("schema",), ("--help",), ("status", sweep())):
-            for inherited in (True, False):  # the signal's default action, and ignored
-                with self.subTest(words=words, inherited=inherited):
-                    said = self.without_reader(*words, restore_signals=inherited)
-                    self.assertEqual((said.returncode, said.stderr), (-signal.SIGPIPE, ""))
-
     def test_a_sweep_outlives_the_reader_of_its_progress(self):
         sweep()
-        said = self.without_reader("run", "jobs/small.json", "-o", "unread.h5", of="stderr")
-        self.assertEqual(said.returncode, ALL_DONE)
-        self.assertIn("4 tasks: 4 ok", said.stdout)
+        reader, writer = os.pipe()
+        os.close(reader)
+        with open(writer, "wb"):
+            said = self.said("run", "jobs/small.json", "-o", "unread.h5", stderr=writer)
+        self.assertIn("4 tasks: 4 ok", said)
+
+
+class Launched(Case):
+    """`run -n`, which starts mpirun."""
+
+    def test_its_output_is_that_of_the_run(self):
+        job = write_job("crew")
+        self.assertIn("4 tasks: 4 ok", self.said("run", job, "-n", 2))
+        self.assert_refused(("run", job, "-n", 2), "crew.h5 exists already")
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            said = self.ran("run", job, "-n", 2, "-o", "full.h5", code=OUTPUT_LOST, stdout=full).stderr
+        self.assertIn("standard output failed: No space left on device", said)
+        self.assertEqual(self.shown("info", "full.h5", "--verify")["pending"], 0)
+
+    def started(self, name):
+        job = write_job(name, samples=1, scene={**ROD, "segments": {"grid": [5, 100]}}, record={"solves": "summary"},
+                        time={"step_s": 0.02, "steps": 1_000_000})
+        process = subprocess.Popen([RODSWEEP, "run", job, "-n", "2"], stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        while not os.path.exists(f"results/{name}.h5") or not self.shown("status", f"results/{name}.h5")["running"]:
+            self.assertIsNone(process.poll())
+            time.sleep(0.05)
+        return process
+
+    def test_mpirun_gets_its_signals_once(self):
+        process = self.started("stopped")
+        process.send_signal(signal.SIGUSR1)
+        self.assertIn("stopped by SIGUSR1", process.communicate(timeout=60)[1])
+        self.assertEqual(process.returncode, STOPPED)
+        self.assertEqual(self.shown("status", "results/stopped.h5")["runs"][0]["exit_code"], STOPPED)
+
+    def test_ranks_end_with_a_launcher_that_is_killed(self):
+        process = self.started("killed")
+        process.kill()
+        process.communicate(timeout=60)
+        while self.shown("status", "results/killed.h5")["being_written"]:
+            time.sleep(0.05)
 
 
 if __name__ == "__main__":

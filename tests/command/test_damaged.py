@@ -4,12 +4,11 @@
 import os
 import random
 import resource
-import signal
 import socket
 import subprocess
 import unittest
 
-from program import ALL_DONE, DAMAGED, STOPPED, TASKS_FAILED, OUTPUT_LOST, RODSWEEP, USER_ERROR, changed, rodsweep, sweep
+from program import ALL_DONE, DAMAGED, STOPPED, TASKS_FAILED, OUTPUT_LOST, USER_ERROR, changed, rodsweep, sweep
 
 JOB = os.path.join("jobs", "small.json")
 
@@ -23,14 +22,6 @@ def write(path, contents):
     with open(path, "wb") as file:
         file.write(contents)
     return path
-
-
-def with_room_for(size):
-    """Limits the size of a child process's files, as a full disk does."""
-    def limit():
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-    return limit
 
 
 class Plain(unittest.TestCase):
@@ -55,7 +46,7 @@ class Damaged(Plain):
 
     def test_flipped_bits_end_no_command(self):
         draw = random.Random(3)
-        commands = (("status",), ("info", "--verify"), ("query", "--csv"), ("pack", "-o", "new.h5"))
+        commands = (("status",), ("info", "--verify"), ("query", "--csv"), ("merge", "-o", "new.h5"))
         for number in range(24):
             command, *rest = commands[number % len(commands)]
             with self.subTest(number=number, command=command):
@@ -92,25 +83,11 @@ class Damaged(Plain):
 
 
 class Full(Plain):
-    """A disk that fills up when a file is about half written."""
-
-    def test_nothing_is_left_of_a_file_that_has_no_room(self):
-        path = os.path.abspath(sweep("roomy", samples=10, record={"trajectory_every": 1}))
-        os.makedirs("full", exist_ok=True)
-        for words, room in ((("pack", path, "-o", "a.h5"), 0.15), (("merge", path, "-o", "a.h5"), 0.5),
-                            (("rerun", path, "0", "-o", "a.h5"), 0.05),
-                            (("run", os.path.abspath("jobs/roomy.json"), "-o", "a.h5"), 0.5)):
-            with self.subTest(command=words[0]):
-                size = int(room * os.path.getsize(path))
-                said = rodsweep(*words, cwd="full", preexec_fn=with_room_for(size),
-                                env={**os.environ, "PMIX_MCA_gds": "hash"})  # otherwise Open MPI needs room for files
-                self.assert_plain(said, USER_ERROR)
-                self.assertIn("a.h5", said.stderr)
-                self.assertEqual(os.listdir("full"), [])
+    """A disk that fills up: files are in tests/laws/test_commands.py."""
 
     def test_text_that_has_no_room_is_an_error(self):
         with open("text", "w", encoding="utf-8") as text:
-            said = rodsweep("schema", stdout=text, preexec_fn=with_room_for(100))
+            said = rodsweep("schema", stdout=text, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)))
         self.assertEqual(said.returncode, OUTPUT_LOST)
         self.assertIn("File too large", said.stderr)
 
@@ -131,21 +108,6 @@ class Left(Plain):
         self.assertIn(name, rodsweep("status", "left.h5").stderr)
         os.remove(name)
         self.assertNotIn("unfinished", rodsweep("status", "left.h5").stderr)
-
-    def test_packing_that_is_stopped_leaves_nothing(self):
-        results = sweep()
-        for _ in range(5):
-            packing = subprocess.Popen([RODSWEEP, "pack", results, "-o", "stopped.h5"], stdout=subprocess.DEVNULL,
-                                       stderr=subprocess.PIPE, text=True)
-            while packing.poll() is None and not any("stopped.h5" in name for name in os.listdir(".")):
-                pass
-            packing.send_signal(signal.SIGTERM)
-            said = packing.communicate(timeout=600)[1]
-            self.assertIn(packing.returncode, (STOPPED, ALL_DONE), said)  # or it was faster than the signal
-            self.assertEqual([name for name in os.listdir(".") if "stopped.h5" in name],
-                             ["stopped.h5"] if packing.returncode == ALL_DONE else [])
-            if packing.returncode == ALL_DONE:
-                os.remove("stopped.h5")
 
     def test_what_a_program_makes_now_is_not(self):
         write(f"made.h5.unfinished-{socket.gethostname()}-{os.getpid()}-0123abcd", b"half")

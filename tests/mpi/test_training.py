@@ -132,7 +132,6 @@ class Refused(TrainingCase):
                 (0, "--extend", "run", path, "-o", "new.h5", "--extend", "data.h5"),
                 (0, ("lost.json: data: nowhere.h5", "dataset"), "run", train_job("lost", data="nowhere.h5")),
                 (0, "first.h5 holds a trained model", "run", data_job("data"), "-o", "first.h5", "--resume"),
-                (0, "first.h5", "pack", "first.h5"),
                 (0, "first.h5", "rerun", "first.h5", "0")):
             with self.subTest(words=words):
                 self.assert_refused_once(ranks, *words, says=says)

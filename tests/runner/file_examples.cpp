@@ -2,9 +2,11 @@
 
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <stdexcept>
 
 #include "runner/file/columns.hpp"
 #include "runner/file/layout.hpp"
@@ -65,6 +67,11 @@ void make_file(const std::filesystem::path& path, const Plan& plan, std::int64_t
   ResultsFile file = ResultsFile::create(path, plan, test_provenance(), MPI_COMM_SELF);
   for (std::int64_t i = 0; i < done; ++i) file.write(plan.task(i), synthetic_record(plan, i));
   file.close();
+}
+
+void compress(const std::filesystem::path& from, const std::filesystem::path& to) {
+  const std::string command = "h5repack -f SHUF -f GZIP=4 '" + from.native() + "' '" + to.native() + "'";
+  if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
 }
 
 std::size_t entries(const std::filesystem::path& folder) {

@@ -59,6 +59,9 @@ void set_attribute(hid_t file, const char* object, const char* name, const Value
   hdf5::write_attribute(hdf5::Object(H5Oopen(file, object, H5P_DEFAULT)).id(), name, value);
 }
 
+/// Makes a compressed copy with h5repack, as a user does.
+void compress(const std::filesystem::path& from, const std::filesystem::path& to);
+
 std::size_t entries(const std::filesystem::path& folder);
 
 std::string bytes_of(const std::filesystem::path& path);

@@ -91,7 +91,6 @@ TEST_CASE("the commands on results files take their options") {
   const auto rerun = std::get<RerunOptions>(parse({"rerun", "a.h5", "12", "--trajectory-every", "4"}));
   CHECK((rerun.file == "a.h5" && rerun.task == 12 && rerun.trajectory_every == 4 && !rerun.output));
   CHECK(rerun.command == "build/rodsweep rerun a.h5 12 --trajectory-every 4");
-  CHECK(std::get<PackOptions>(parse({"pack", "a.h5", "-o", "b.h5"})).output == "b.h5");
 }
 
 TEST_CASE("a word that is not a command names a program of its own, or what may have been meant") {
@@ -142,7 +141,7 @@ TEST_CASE("mistakes on the command line are answered with exit code 2 and what i
 }
 
 TEST_CASE("every command's help shows an example and the exit codes") {
-  for (const char* command : {"run", "plan", "validate", "status", "info", "rerun", "pack"}) {
+  for (const char* command : {"run", "plan", "validate", "status", "info", "rerun", "systems", "merge"}) {
     CAPTURE(command);
     const PrintedText help = answer({command, "--help"});
     CHECK(help.code == ExitCode::ok);

@@ -3,7 +3,6 @@
 #include <fstream>
 
 #include "runner/dataset/dataset_reader.hpp"
-#include "runner/file/pack.hpp"
 #include "tests/runner/data_set_examples.hpp"
 #include "tests/runner/stored_examples.hpp"
 
@@ -108,19 +107,20 @@ TEST_CASE("failed simulations are left out with a note") {
   CHECK_THAT(refusal_of(folder / "none.h5"), Contains("holds no usable simulation: all 3 failed"));
 }
 
-TEST_CASE("the hash is that of the data: the same for the same job and in a packed copy, another for another") {
+TEST_CASE("the hash is that of the data: the same for the same job and in a compressed copy, another for another") {
   const TemporaryFolder folder;
   make_data_set(folder / "a.h5", ragged_job());
   make_data_set(folder / "again.h5", ragged_job());
   Json other = ragged_job();
   other["seed"] = 5;
   make_data_set(folder / "other.h5", other);
-  pack_results(folder / "a.h5", folder / "packed.h5");
+  compress(folder / "a.h5", folder / "compressed.h5");
   const std::string hash = DatasetReader(folder / "a.h5").hash();
   CHECK(hash.size() == 16);
   CHECK(DatasetReader(folder / "again.h5").hash() == hash);
-  CHECK(DatasetReader(folder / "packed.h5").hash() == hash);
-  CHECK(DatasetReader(folder / "packed.h5").read(1).systems.size() == 4);  // verified by the checksums of the original
+  CHECK(DatasetReader(folder / "compressed.h5").hash() == hash);
+  CHECK(DatasetReader(folder / "compressed.h5").read(1).systems.size() ==
+        4);  // verified by the checksums of the original
   CHECK(DatasetReader(folder / "other.h5").hash() != hash);
 }
 

@@ -1,14 +1,16 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
-#include "runner/file/pack.hpp"
 #include "runner/file/resume_check.hpp"
 #include "tests/runner/file_examples.hpp"
 
@@ -196,8 +198,6 @@ TEST_CASE("a job that was changed in the file is damage") {
   }
   CHECK_THAT(inspect_refusal(made.path), Contains("its job does not match its checksum (/job/text)"));
   CHECK_THAT(resume_refusal(made.path, made.plan), Contains("its job does not match its checksum"));
-  CHECK_THAT(message_of<FileError>([&] { pack_results(made.path, made.path.native() + ".packed"); }),
-             Contains("checksum"));
 }
 
 TEST_CASE("the same job written in another way is continued: order of keys, form of numbers, name, description") {
@@ -239,6 +239,31 @@ TEST_CASE("resume with a program that expands the job differently is refused wit
     set_attribute(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/job", "plan_hash", "0123456789abcdef");
     CHECK_THAT(resume_refusal(made.path, made.plan), Contains("/job, plan_hash"));
   }
+}
+
+TEST_CASE("a compressed copy is read, but not continued until it is decompressed") {
+  const FullFile made(3);
+  const fs::path copy = made.folder / "copy.h5", again = made.folder / "again.h5";
+  compress(made.path, copy);
+  CHECK(verify(copy).checked == 3);
+  CHECK(verify(copy).damaged.empty());
+  CHECK(inspect(copy).plan_hash == inspect(made.path).plan_hash);
+  CHECK(resume_refusal(copy, made.plan) ==
+        copy.native() +
+            " is a compressed copy (/runs/begin is stored in chunks), which cannot be resumed: resume the original, "
+            "decompress the copy with h5repack -f NONE -l CONTI, or run into another file with -o FILE");
+  REQUIRE(std::system(fmt::format("h5repack -f NONE -l CONTI '{}' '{}'", copy.native(), again.native()).c_str()) == 0);
+  CHECK(resume_refusal(again, made.plan) == "");
+  CHECK(reproducible_bytes(again, made.plan) == reproducible_bytes(made.path, made.plan));
+}
+
+TEST_CASE("the file of one task run again is not continued") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  make_file(folder / "one.h5", plan.alone(3, 1), 1);
+  CHECK(inspect(folder / "one.h5").rerun_of_task == 3);
+  CHECK_THAT(resume_refusal(folder / "one.h5", plan),
+             Contains("holds only one task of a sweep, from `rodsweep rerun`"));
 }
 
 TEST_CASE("a sweep does not go on with another file under a name in its job") {
