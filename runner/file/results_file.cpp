@@ -109,8 +109,8 @@ struct Verified {
 
 /// Collective. Begins at another task in each run, so that runs which have time for a part verify all in the end.
 /// Returns none if `verifying` is Verify::stop on any rank.
-std::optional<Verified> to_run_again(const fs::path& path, const ResumePoint& point, Retry retry, MPI_Comm comm,
-                                     const std::function<Verify()>& verifying) {
+std::optional<Verified> to_run_again(const fs::path& path, const Plan& plan, const ResumePoint& point, Retry retry,
+                                     MPI_Comm comm, const std::function<Verify()>& verifying) {
   int rank = 0, size = 1;
   check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
   check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
@@ -121,7 +121,7 @@ std::optional<Verified> to_run_again(const fs::path& path, const ResumePoint& po
   verified.again.assign(done.size(), not_again);
   std::uint8_t stopped = 0;
   collectively(comm, [&] {
-    const TaskReader reader(path, TaskReader::Times::left_out);
+    const TaskReader reader(path, TaskReader::Times::left_out, plan.tasks());
     SyncedFile file(path);
     TaskRecord record;
     Verify state = Verify::on;
@@ -275,7 +275,7 @@ std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan&
     check_mpi(MPI_Bcast(bytes->data(), static_cast<int>(bytes->size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
   }
   point.runs = broadcast(point.runs, comm);
-  const auto verified = to_run_again(path, point, retry, comm, verifying);
+  const auto verified = to_run_again(path, plan, point, retry, comm, verifying);
   if (!verified) return std::nullopt;
   const std::int64_t finished = std::count(point.done.begin(), point.done.end(), 1);
   for (std::size_t i = 0; i < verified->again.size(); ++i) {

@@ -86,14 +86,20 @@ void check_rows(const RowRange& rows, std::int64_t width, const hdf5::RowDataset
 
 }  // namespace
 
-TaskReader::TaskReader(const fs::path& path, Times times) : path_(path), file_(open_results(path)) {
+TaskReader::TaskReader(const fs::path& path, Times times) : TaskReader(path, times, nullptr) {}
+
+TaskReader::TaskReader(const fs::path& path, Times times, const TaskList& tasks)
+    : TaskReader(path, times, std::shared_ptr<const TaskList>(std::shared_ptr<void>(), &tasks)) {}
+
+TaskReader::TaskReader(const fs::path& path, Times times, std::shared_ptr<const TaskList> tasks)
+    : path_(path), file_(open_results(path)), tasks_(std::move(tasks)) {
   reading(path, [&] {
     // States before data: all data of a task with state 1 are in the file.
     states_ = read_states(file_, path);
-    for (const std::string& text : hdf5::read_texts(file_.id(), "/tasks/outcome"))
-      outcomes_.push_back(outcome_called(text));
-    if (outcomes_.size() != states_.size()) throw Damage("/tasks/outcome has another length than /tasks/state");
-    tasks_ = read_tasks(file_, states_.size());
+    outcomes_.resize(states_.size());
+    hdf5::visit_texts(file_.id(), "/tasks/outcome", states_.size(),
+                      [&](std::size_t task, const std::string& text) { outcomes_[task] = outcome_called(text); });
+    if (!tasks_) tasks_ = std::make_shared<const TaskList>(read_tasks(file_, states_.size()));
     sizes_ = {axis_size(file_, "/axes/guess", 0), axis_size(file_, "/axes/tolerance", 0),
               axis_size(file_, "/trajectories/first_row", 1)};
     const auto rows = [&](const char* dataset) { return hdf5::RowDataset(file_.id(), dataset); };
@@ -117,7 +123,7 @@ TaskOutcome TaskReader::outcome(std::int64_t task) const {
 
 bool TaskReader::read(std::int64_t index, TaskRecord& record) const {
   return reading(path_, [&] {
-    const Task task = tasks_.at(index);
+    const Task task = tasks_->at(index);
     for (std::size_t c = 0; c < columns_.size(); ++c)
       if (const Column& column = columns()[c]; columns_[c])
         check_rows(task.rows[column.rows], row_width(column, sizes_), columns_[c]);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,9 +21,11 @@ class TaskReader {
  public:
   enum class Times { read, left_out };
   explicit TaskReader(const std::filesystem::path& path, Times times = Times::read);
+  /// For a file whose tasks are known: this reader then needs 3 bytes for each. `tasks` must outlive it.
+  TaskReader(const std::filesystem::path& path, Times times, const TaskList& tasks);
 
-  /// The tasks as stored: identity and rows.
-  const TaskList& tasks() const { return tasks_; }
+  /// Identity and rows of the tasks.
+  const TaskList& tasks() const { return *tasks_; }
 
   /// Whether the task was complete when the file was opened.
   bool done(std::int64_t task) const { return states_[static_cast<std::size_t>(task)] == 1; }
@@ -38,10 +41,13 @@ class TaskReader {
   TaskOrigin origin(std::int64_t task) const;
 
  private:
+  /// `tasks`: null: as stored.
+  TaskReader(const std::filesystem::path& path, Times times, std::shared_ptr<const TaskList> tasks);
+
   std::filesystem::path path_;
   hdf5::File file_;
   AxisSizes sizes_;
-  TaskList tasks_;
+  std::shared_ptr<const TaskList> tasks_;
   std::vector<std::uint8_t> states_;
   std::vector<std::optional<TaskOutcome>> outcomes_;  ///< none: not the name of an outcome
   std::vector<hdf5::RowDataset> columns_;             ///< in the order of columns(); empty: not in the file

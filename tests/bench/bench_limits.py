@@ -4,7 +4,8 @@
 bench_limits.py RODSWEEP MPIRUN [MOST_TASKS]
 
   start   wall time of a sweep of one task, over the number of ranks
-  begin   wall time until tasks begin (plan, file), and largest memory of master and worker, over the number of tasks
+  begin   wall time until tasks begin (plan, file), and largest memory of master and worker, over the number of tasks; the
+          same for --resume
   rate    tiny tasks per second, over the number of workers, and the master's processor time per task, which bounds
           the rate of assignment
   write   MB/s that workers write into the one file (/timing/tasks/write_s; into the page cache first), each and
@@ -43,7 +44,7 @@ class Sweeps:
 
     def run(self, ranks, tasks, *options, job=None):
         """Wall time; largest resident memory in MB and processor time of every rank. Keeps the last file."""
-        if os.path.exists("out.h5"):
+        if os.path.exists("out.h5") and "--resume" not in options:
             os.remove("out.h5")
         with open("job.json", "w") as file:
             json.dump({**(job or JOB), "samples": tasks}, file)
@@ -83,9 +84,10 @@ def main():
             print(f"limits: start of {ranks} ranks: {sweeps.run(ranks, 1)[0]:.2f} s", flush=True)
         tasks = 1000
         while tasks <= most:
-            seconds, memory, _ = sweeps.run(3, tasks, "--time-limit", "0.001")
-            print(f"limits: begin of {tasks} tasks: {seconds:.2f} s, master {memory[0]:.0f} MB, workers "
-                  f"{max(memory[1:]):.0f} MB", flush=True)
+            for how in ((), ("--resume",)):
+                seconds, memory, _ = sweeps.run(3, tasks, "--time-limit", "0.001", *how)
+                print(f"limits: begin of {tasks} tasks: {seconds:.2f} s, master {memory[0]:.0f} MB, workers "
+                      f"{max(memory[1:]):.0f} MB{', resumed' if how else ''}", flush=True)
             tasks *= 10
         tasks = 20_000
         for ranks in (2, 3, 5, 9, 17):
