@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "runner/file/columns.hpp"
+#include "runner/file/common_place.hpp"
 #include "runner/file/durable.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
@@ -51,16 +52,6 @@ void on_first_rank(MPI_Comm comm, Work&& work) {
   text = broadcast(std::move(text), comm);
   if (outcome == file_error) throw FileError(text);
   throw Hdf5Error(text);
-}
-
-/// Open MPI's file layer (4.1) copies the path to buffers of 256 bytes, and aborts if they overflow.
-void check_path(const fs::path& path) {
-  constexpr std::size_t most = 230;
-  if (path.native().size() > most)
-    throw FileError(
-        fmt::format("{}: the path has {} bytes; must be at most {} for MPI-IO: name a shorter path with -o FILE, for "
-                    "example from its folder",
-                    path.native(), path.native().size(), most));
 }
 
 /// The hosts of all ranks without duplicates, in rank order. Collective.
@@ -249,8 +240,8 @@ ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Pr
                                 const FreeSpace& free_space, const std::vector<fs::path>& earlier) {
   int runs = 0;
   FileLock lock;
+  check_common_place(path, comm);
   on_first_rank(comm, [&] {
-    check_path(path);
     runs = create_results_file(path, plan, free_space, earlier);
     lock = FileLock(path);
   });
@@ -263,8 +254,8 @@ std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan&
                                                MPI_Comm comm, Retry retry, const std::function<Verify()>& verifying) {
   ResumePoint point;
   FileLock lock;
+  check_common_place(path, comm);
   on_first_rank(comm, [&] {
-    check_path(path);
     lock = FileLock(path);
     point = check_resumable(path, plan);
     if (!lock.held()) refuse_living(path);

@@ -109,9 +109,13 @@ UnfinishedFile::~UnfinishedFile() {
   fs::remove(temporary_, ignored);
 }
 
-void UnfinishedFile::check_creatable() const {
+void UnfinishedFile::create() const {
   if (!Descriptor(open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600)))
     throw creation_error(path_, std::system_category().message(errno));
+}
+
+void UnfinishedFile::check_creatable() const {
+  create();
   unlink(temporary_.c_str());
 }
 

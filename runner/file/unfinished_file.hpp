@@ -32,6 +32,8 @@ class UnfinishedFile {
 
   const std::filesystem::path& path() const { return temporary_; }
 
+  /// Creates an empty file; throws if that is impossible.
+  void create() const;
   /// Tries to create the file, because the system's error message is clearer than HDF5's error stack.
   void check_creatable() const;
 

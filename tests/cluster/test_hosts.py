@@ -6,11 +6,12 @@ Run by CTest within alone.sh. Prints recovery times; docs/faults.md has those of
 
 import os
 import signal
+import subprocess
 import unittest
 
 from hosts import Hosts
 from sweeps import HostSweep, ranks_on, run_undisturbed
-from program import ALL_DONE, SweepCase, job, status
+from program import ALL_DONE, MPIRUN, RODSWEEP, USER_ERROR, SweepCase, job, status
 
 TIMEOUT_S = 3   # a worker's; the default is two minutes
 # TCP's keep-alive reports a dead connection to Open MPI, here within 7 s.
@@ -48,6 +49,18 @@ class HostsCase(SweepCase):
         seconds = sweep.now() - fault_s
         print(f"{self.id().split('.')[-1]}: reassigned after {seconds:.1f} s", flush=True)
         self.assertLess(seconds, 200, sweep.text())
+
+
+class Unshared(HostsCase):
+    def test_a_host_with_a_folder_of_its_own_is_named(self):
+        os.makedirs("results", exist_ok=True)
+        self.hosts[2].run("mount", "-t", "tmpfs", "none", os.path.abspath("results"))
+        done = subprocess.run([MPIRUN, "--hostfile", self.hosts.file, "--map-by", "node", "--oversubscribe", "-n", "4",
+                               RODSWEEP, "run", self.job, "-o", "results/apart.h5"],
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300, check=False)
+        self.assertEqual(done.returncode, USER_ERROR, done.stderr)
+        self.assertIn("results/apart.h5: ranks on h3 do not find there", done.stderr)
+        self.assertEqual(os.listdir("results"), [])
 
 
 class WithinARun(HostsCase):

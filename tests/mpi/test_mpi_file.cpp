@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "runner/file/common_place.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/mpi/mpi_session.hpp"
@@ -73,4 +74,29 @@ TEST_CASE("every rank is refused with the same words") {
   CHECK_THAT(text, Contains("only 1 B are free"));
   CHECK(everywhere_the_same(text));
   CHECK_FALSE(std::filesystem::exists("new.h5"));
+}
+
+TEST_CASE("a folder that is another one on some host is refused by all ranks, and nothing is left there") {
+  namespace fs = std::filesystem;
+  const fs::path common = "common", own = fs::path("own-" + std::to_string(own_rank()));
+  const bool apart = own_rank() == rank_count() - 1;
+  CHECK_NOTHROW(check_common_place(common / "a.h5", MPI_COMM_WORLD));
+  const std::string text =
+      message_of<FileError>([&] { check_common_place((apart ? own : common) / "a.h5", MPI_COMM_WORLD); });
+  CHECK_THAT(text, Contains("a.h5: ranks on " + host_name() + " do not find there"));
+  MPI_Barrier(MPI_COMM_WORLD);
+  CHECK(entries(common) == 0);
+}
+
+TEST_CASE("where no file can be created, ranks look for the file to resume") {
+  namespace fs = std::filesystem;
+  const std::string name(230, 'x');  // with the ending of an unfinished file, it is too long for a file system
+  if (own_rank() == 0) std::ofstream(name) << "results";
+  MPI_Barrier(MPI_COMM_WORLD);
+  CHECK_NOTHROW(check_common_place(name, MPI_COMM_WORLD));
+  const fs::path path = own_rank() == 0 ? fs::path(name) : "elsewhere" / fs::path(name);
+  CHECK_THAT(message_of<FileError>([&] { check_common_place(path, MPI_COMM_WORLD); }), Contains("do not find there"));
+  MPI_Barrier(MPI_COMM_WORLD);
+  CHECK_THAT(message_of<FileError>([&] { check_common_place(std::string(230, 'y'), MPI_COMM_WORLD); }),
+             Contains("cannot be created"));
 }

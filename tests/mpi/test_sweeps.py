@@ -7,13 +7,14 @@ Run by CTest in an empty folder, with RODSWEEP, MPIRUN and FAILING_DISK in the e
 import json
 import os
 import signal
+import subprocess
 import time
 import unittest
 import unittest.mock
 
 import h5py
 import numpy as np
-from program import ALL_DONE, STOPPED, TASKS_FAILED, TOO_LONG, USER_ERROR, SweepCase, checksum, data_job, job, \
+from program import ALL_DONE, MPIRUN, RODSWEEP, STOPPED, TASKS_FAILED, TOO_LONG, USER_ERROR, SweepCase, checksum, data_job, job, \
     kill_all, long_job, ranks_of, rodsweep, start, status, wait_for_tasks
 
 
@@ -361,9 +362,9 @@ class Speaking(SweepCase):
         self.rodsweep(2, "run", job("files"))
         path = "results/files.h5"
         self.speak_once((("query", path), "cg_ratio.previous"), (("schema",), '"rodsweep job"'),
-                        (("pack", path), "6 finished tasks"), (("rerun", path, "3"), "identical to task 3"))
+                        (("rerun", path, "3"), "identical to task 3"), (("merge", path, "-o", "results/files-all.h5"), "6 of 6"))
         made = sorted(name for name in os.listdir("results") if name.startswith("files"))
-        self.assertEqual(made, ["files-packed.h5", "files-task-3.h5", "files.h5"])
+        self.assertEqual(made, ["files-all.h5", "files-task-3.h5", "files.h5"])
 
     def test_results_go_to_stdout_and_progress_to_stderr_without_colours(self):
         ran = self.rodsweep(2, "run", job("said"))
@@ -371,6 +372,29 @@ class Speaking(SweepCase):
         self.assertIn("next: ", ran.stdout)
         self.assertNotIn("\x1b", ran.stdout + ran.stderr)
         self.assertNotIn("\r", ran.stderr)
+
+
+class Apart(SweepCase):
+    """A rank that finds another folder at the path of the results: here it starts elsewhere."""
+
+    def run_apart(self, *words):
+        os.makedirs("elsewhere", exist_ok=True)
+        program = [RODSWEEP, "run", os.path.abspath(job("apart")), *words]
+        return subprocess.run([MPIRUN, "-n", "2", *program, ":", "-n", "1", "-wdir", os.path.abspath("elsewhere"), *program],
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, check=False)
+
+    def test_it_is_refused_and_nothing_is_written(self):
+        said = self.run_apart("-o", "common/apart.h5")
+        self.assertEqual(said.returncode, USER_ERROR, said.stderr)
+        self.assertEqual(said.stderr.count("error: "), 1, said.stderr)
+        self.assertIn(f"common/apart.h5: ranks on {os.uname().nodename} do not find there", said.stderr)
+        self.assertEqual(os.listdir("common"), [])
+        self.assertEqual(os.listdir("elsewhere"), [])
+        self.rodsweep(2, "run", "apart.json", "-o", "common/apart.h5")
+        before = checksum("common/apart.h5")
+        self.assertEqual(self.run_apart("-o", "common/apart.h5", "--resume").returncode, USER_ERROR)
+        self.assertEqual(checksum("common/apart.h5"), before)
+        self.assertEqual(self.run_apart("-o", os.path.abspath("common/both.h5")).returncode, ALL_DONE)
 
 
 class Alone(SweepCase):
