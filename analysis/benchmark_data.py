@@ -15,6 +15,7 @@ Files that are there are kept, so a stopped run goes on. `make benchmark-data` r
 import argparse
 import csv
 import hashlib
+import io
 import os
 
 import numpy as np
@@ -22,6 +23,7 @@ from rodsweep import program
 from rodsweep.reading import commandline
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.reading.systems import Systems
+from rodsweep.writing import outputs
 
 EXAMPLES = """examples:
   rodsweep run jobs/benchmark.json -n 2
@@ -86,14 +88,13 @@ def main():
         if not os.path.exists(path):
             program.call("systems", options.file, str(task), "--every", "1", "--first", "-o", path, renamed={})
         print(path)
-    with open(os.path.join(options.output, "reference.csv"), "w", newline="", encoding="utf-8") as out:
-        csv.writer(out, lineterminator="\n").writerows(rows)
-    with open(os.path.join(options.output, "README.md"), "w", encoding="utf-8") as out:
-        out.write(card(options.output, tasks, revision))
+    table = io.StringIO()
+    csv.writer(table, lineterminator="\n").writerows(rows)
+    outputs.write(os.path.join(options.output, "reference.csv"), table.getvalue())
+    outputs.write(os.path.join(options.output, "README.md"), card(options.output, tasks, revision))
     sums = "".join(f"{checksum(os.path.join(options.output, name))}  {name}\n"
                    for name in sorted(os.listdir(options.output)) if name != "SHA256SUMS")
-    with open(os.path.join(options.output, "SHA256SUMS"), "w", encoding="utf-8") as out:
-        out.write(sums)
+    outputs.write(os.path.join(options.output, "SHA256SUMS"), sums)
 
 
 def card(folder, tasks, revision):

@@ -17,11 +17,10 @@ import sys
 
 import numpy as np
 
-from rodsweep.drawing import outputs
 from rodsweep.reading import commandline, conditions, tidy
 from rodsweep.reading.errors import UserError
 from rodsweep.reading.sweepfile import SweepFile
-from rodsweep.writing import tables
+from rodsweep.writing import outputs, tables
 
 EXAMPLES = """examples:
   analysis/export.py results/demo.h5 -o demo.csv

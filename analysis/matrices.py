@@ -11,10 +11,9 @@ NAME is step-STEP_newton-ITERATION_rod-ROD. x is the solution that moved the rod
 import argparse
 import os
 
-from rodsweep.drawing import outputs
 from rodsweep.reading import commandline
 from rodsweep.reading.systems import Systems
-from rodsweep.writing import matrices
+from rodsweep.writing import matrices, outputs
 
 EXAMPLES = """examples:
   rodsweep systems results/demo.h5 12 --first             # results/demo-systems-12.h5

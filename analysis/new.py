@@ -11,6 +11,7 @@ import re
 
 from rodsweep.reading import commandline
 from rodsweep.reading.errors import UserError
+from rodsweep.writing import outputs
 
 EXAMPLES = """examples:
   rodsweep new guess my_guess.py
@@ -103,8 +104,7 @@ def main():
         if os.path.exists(path):
             raise UserError(f"{path} already exists; give another name")
     for path, text in texts.items():
-        with open(path, "x", encoding="utf-8") as file:
-            file.write(text)
+        outputs.write(path, text)
     print(f"{options.file}\n{job}\nnext: rodsweep run {job} -n 2")
 
 

@@ -13,9 +13,10 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from rodsweep.drawing import outputs, staging, surfaces
+from rodsweep.drawing import staging, surfaces
 from rodsweep.reading import commandline, joints, obstacles, trajectory
 from rodsweep.reading.sweepfile import SweepFile
+from rodsweep.writing import outputs
 
 EXAMPLES = """examples:
   analysis/paraview.py results/net.h5

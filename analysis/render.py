@@ -13,11 +13,12 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from rodsweep.drawing import movie, outputs, povray, staging, tints, tools
+from rodsweep.drawing import movie, povray, staging, tints, tools
 from rodsweep.reading import commandline, obstacles, trajectory
 from rodsweep.reading.commandline import whole_number
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
+from rodsweep.writing import outputs
 
 EXAMPLES = """examples:
   analysis/render.py results/net.h5

@@ -11,11 +11,11 @@ import contextlib
 import os
 import sys
 
-from rodsweep.drawing import outputs
 from rodsweep.reading import commandline
 from rodsweep.reading.errors import KeyNotFound, SweepFileError, not_found
 from rodsweep.reading.sweepfile import ALL_BY, SweepFile
 from rodsweep.report import axes, page, sweep
+from rodsweep.writing import outputs
 
 EXAMPLES = """examples:
   analysis/report.py results/demo.h5
@@ -57,8 +57,7 @@ def main():
         raise KeyNotFound("nothing to report: no file is a sweep with a chosen task")
     text = page.html(sweeps, options.title or ", ".join(one.name for one in sweeps[:3]) +
                      (f" and {len(sweeps) - 3} more" if len(sweeps) > 3 else ""))
-    with outputs.whole(path) as part, open(part, "w", encoding="utf-8") as out:
-        out.write(text)
+    outputs.write(path, text)
     print(path)
 
 

@@ -29,6 +29,7 @@ from rodsweep.drawing import layout, study, style
 from rodsweep.reading import commandline, intervals, job_paths, modelfile, score, texts
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
+from rodsweep.writing import outputs
 
 EXAMPLES = """examples:
   analysis/score.py --jobs results/score/*_tuning.h5      # writes results/score/NAME_test.json
@@ -108,8 +109,7 @@ def write_job(path, job, folder):
         with open(path, encoding="utf-8") as file:
             if file.read() != text:
                 raise SweepFileError(f"{path} exists and has other settings: remove it and its results, or rename the tuning file")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(text)
+    outputs.write(path, text)
     print(path)
 
 

@@ -149,9 +149,11 @@ class Job:
     def _text(self, place):
         """The JSON of the job, with place(path) for the paths of input files."""
         try:
-            return json.dumps(job_paths.placed(self._values, place), indent=2, ensure_ascii=False) + "\n"
+            text = json.dumps(job_paths.placed(self._values, place), indent=2, ensure_ascii=False) + "\n"
+            text.encode()
+            return text
         except (TypeError, ValueError) as error:
-            raise JobError(f"{self.name}: {error}") from None
+            raise JobError(program.encodable(f"{self.name}: {error}")) from None
 
 
 def _plain(value):

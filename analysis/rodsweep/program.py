@@ -1,7 +1,8 @@
 """Calls the program `rodsweep`. Its errors become exceptions with the same text, its warnings become warnings.
 
 The program writes its messages to a pseudo terminal, because on a terminal it shows its progress ten times a second.
-This is also its controlling terminal: when Python ends, the program gets SIGHUP and stops.
+This is also its controlling terminal: when Python ends, the program gets SIGHUP and stops. Without pseudo terminals, as
+in some containers, a pipe replaces it.
 """
 
 import codecs
@@ -48,14 +49,15 @@ def path():
 def call(*words, renamed, show=None, accepted=(0,)):
     """Exit code and output of the program. `renamed` maps texts in its messages to others. `show` gets its progress,
     then "". Ctrl-C stops a run, which keeps finished tasks. Raises JobError unless the exit code is accepted."""
-    import pty    # not on Windows, where only results are read
-    import tty
-
-    show, command = show or (lambda text: None), [path(), *words]
-    ours, theirs = pty.openpty()
-    tty.setraw(theirs)    # line ends stay as they are
-    # The first process of a session gets the first terminal that it opens to read and write as controlling terminal.
-    command = ["sh", "-c", 'exec "$@" 2<>"$0"', os.ttyname(theirs), *command]
+    show = show or (lambda text: None)
+    try:
+        command = [os.fsencode(word) for word in (path(), *words)]
+    except UnicodeEncodeError as error:
+        raise JobError(f"{encodable(error.object)}: {error.reason}") from None
+    ours, theirs, terminal = _channel()
+    if terminal:
+        # The first process of a session gets the first terminal that it opens to read and write as controlling terminal.
+        command = ["sh", "-c", 'exec "$@" 2<>"$0"', terminal, *command]
     with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
         with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=theirs, start_new_session=True,
                               env=_environment()) as process:
@@ -74,6 +76,25 @@ def call(*words, renamed, show=None, accepted=(0,)):
         _check(process.returncode, said, accepted)
         output.seek(0)
         return process.returncode, output.read()
+
+
+def encodable(text):
+    """The text with "\\udc80" and so on for what UTF-8 does not have."""
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
+def _channel():
+    """Descriptors to read and write the program's messages, and the name of the terminal; "": there are no pseudo
+    terminals, so this is a pipe. Then progress comes in the program's sparse lines, which are not shown."""
+    import pty    # not on Windows, where only results are read
+    import tty
+
+    try:
+        ours, theirs = pty.openpty()
+        tty.setraw(theirs)    # line ends stay as they are
+        return ours, theirs, os.ttyname(theirs)
+    except OSError:
+        return *os.pipe(), ""
 
 
 def _environment():

@@ -1,6 +1,7 @@
 """Shows the progress of a run: in a notebook, or in the last line of a terminal."""
 
 import os
+import shutil
 import sys
 
 
@@ -10,8 +11,13 @@ def line():
     if hasattr(shell, "kernel"):
         return _in_notebook()
     if sys.stderr.isatty() and os.environ.get("TERM", "dumb") != "dumb":
-        return lambda text: print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+        return _in_terminal
     return lambda text: None
+
+
+def _in_terminal(text):
+    columns = shutil.get_terminal_size().columns    # a terminal wraps after the last one
+    print(f"\r\x1b[K{text[:columns - 1]}", end="", file=sys.stderr, flush=True)
 
 
 def _in_notebook():

@@ -108,6 +108,12 @@ class Runs(WithJobs):
                 ended = exit_codes(part)
         self.assertEqual(ended, [4])
 
+    def test_it_runs_where_there_are_no_pseudo_terminals(self):
+        with unittest.mock.patch("pty.openpty", side_effect=OSError("out of pty devices")):
+            self.assertEqual(self.run_job(tiny(), workers=2).census().ok, 3)
+            with self.assertRaisesRegex(rodsweep.JobError, "seed"):
+                tiny(seed=-1).validate()
+
     def test_a_data_set_a_training_and_the_use_of_its_model(self):
         data = tiny("data", kind="dataset", guesses=None).run(progress=False)
         net = rodsweep.Job("net", kind="train", seed=1, data=data, validation_simulations=1, **LEARNED)
@@ -172,6 +178,14 @@ class Messages(WithJobs):
         self.assertIn('unknown option --retry-faild; did you mean "--retry-failed"?', said)
         self.assertEqual(self.refused(tiny(seed={1}).validate), "tiny: Object of type set is not JSON serializable")
 
+    def test_what_utf8_does_not_have_is_refused(self):
+        for job in (tiny("\ud800"), tiny(description="\ud800"), tiny(**{"\ud800": 1})):
+            with self.subTest(job=job.values), self.assertRaisesRegex(rodsweep.JobError, "surrogates not allowed") as raised:
+                job.run()
+            str(raised.exception).encode()
+        with self.assertRaisesRegex(rodsweep.JobError, r"^\\ud800.h5: surrogates not allowed$"):
+            tiny().run(output="\ud800.h5")
+
     def test_a_missing_file_is_named_with_the_folder_where_its_path_starts(self):
         said = self.refused(tiny(guesses=["zero", {"copingnet": {"model": "m/none.h5"}}]).run)
         self.assertIn(f"{self.folder}/m/none.h5 was not found; the path is relative to {self.folder}", said)
@@ -188,7 +202,7 @@ class Messages(WithJobs):
         self.assertEqual(caught.filename, __file__)    # the line of the user
 
     def test_a_run_that_stops_early_says_why(self):
-        words = r"^no task was begun: .* the time limit is .*\. \(exit code 5\)$"
+        words = r"^no remaining task fits into the time limit of .*\. \(exit code 5\)$"
         with self.assertRaisesRegex(rodsweep.JobError, words) as caught:
             tiny().run(time_limit=1e-9)
         self.assertEqual(caught.exception.code, 5)
@@ -219,6 +233,11 @@ class Parts(WithJobs):
     def test_keys_of_input_files_are_those_of_the_program(self):
         sources = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("runner/job/*.?pp"))
         self.assertEqual({*re.findall(r'file_key\("(\w+)"', sources), "data"}, set(job_paths.PATHS))    # data: of trainings
+
+    def test_the_bar_fits_its_terminal(self):
+        with unittest.mock.patch("sys.stderr", Bar()) as shown, unittest.mock.patch.dict(os.environ, {"TERM": "xterm", "COLUMNS": "20"}):
+            progress.line()("x" * 40)
+        self.assertEqual(shown.getvalue(), "\r\x1b[K" + "x" * 19)
 
     def test_a_terminal_and_a_notebook_show_the_bar(self):
         with unittest.mock.patch.dict(os.environ, TERM="xterm"), unittest.mock.patch("sys.stderr", Bar()) as terminal:

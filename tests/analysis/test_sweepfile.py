@@ -74,6 +74,13 @@ class Masking(Folder):
         with self.assertRaises(ValueError):
             next(file.solve_blocks([5], ["/solves/newton"]))
 
+    def test_control_characters_of_a_message_are_shown_by_their_number(self):
+        self.open(failed={1: "error"})
+
+        def rude(h5):
+            h5["tasks/message"][1] = "\x1b[31mred\n\u0085ä".encode()
+        self.assertEqual(self.changed(rude).results("message", [1])[0], "\\x1b[31mred\n\\x85ä")
+
     def test_absent_and_empty_columns_are_none(self):
         file = self.open(method="direct")
         self.assertEqual((file.guesses, len(file.tolerances), file.zero), ([], 0, None))

@@ -11,6 +11,7 @@ from matplotlib.transforms import Bbox
 
 from rodsweep.drawing import style
 from rodsweep.reading import texts
+from rodsweep.writing import outputs
 
 METADATA = {"pdf": {"CreationDate": None, "Producer": None, "Creator": "rodsweep"}, "png": {"Software": "rodsweep"},
             "svg": {"Date": None, "Creator": "rodsweep"}}
@@ -125,7 +126,8 @@ class Page:
         box = None if caption else Bbox([[0, self.notes_mm * style.MM], [width, height]])
         paths = [os.path.join(folder, f"{name}.{ending}") for ending in formats]
         for path, ending in zip(paths, formats):
-            self.figure.savefig(path, metadata=METADATA[ending], bbox_inches=box)
+            with outputs.whole(path) as part:
+                self.figure.savefig(part, metadata=METADATA[ending], bbox_inches=box)
         plt.close(self.figure)
         return paths
 

@@ -1,8 +1,10 @@
 """Shared by the scripts' command lines: choice of tasks, guesses and tolerances, and error messages."""
 
 import argparse
+import io
 import os
 import re
+import signal
 import sys
 import warnings
 
@@ -10,8 +12,11 @@ import numpy as np
 
 from rodsweep.reading import conditions, measures, texts
 from rodsweep.reading.errors import IgnoredData, KeyNotFound, UserError, not_found
+from rodsweep.reading.hdf5 import printable
 from rodsweep.reading.task_columns import TaskColumns
 
+USER_ERROR, STOPPED, OUTPUT_LOST = 2, 4, 7    # exit codes of the program
+STDOUT = 1
 USUAL_WARNING = warnings.formatwarning
 DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
@@ -58,17 +63,63 @@ def _warning(message, category, *place):
     return USUAL_WARNING(message, category, *place)
 
 
+class OutputLost(Exception):
+    """Standard output could not be written."""
+
+
+class _Output(io.FileIO):
+    """Standard output, whose errors differ from those of other files."""
+
+    def write(self, data):
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            raise OutputLost(error.strerror) from None
+
+
+def _open_output():
+    """Makes standard output an _Output that writes what its encoding lacks as "?"."""
+    if sys.stdout is not sys.__stdout__:    # redirected within Python
+        return
+    encoding, lines = "utf-8", False
+    if sys.stdout:
+        encoding, lines = sys.stdout.encoding, sys.stdout.line_buffering
+    else:    # it is closed: writing to this fails
+        os.dup2(os.open(os.devnull, os.O_RDONLY), STDOUT)
+    sys.stdout = io.TextIOWrapper(io.BufferedWriter(_Output(STDOUT, "w", closefd=False)), encoding, "replace",
+                                  line_buffering=lines)
+
+
+def _interrupt(number, _):
+    raise KeyboardInterrupt(signal.Signals(number).name)
+
+
 def run(main):
     """Calls main(). A UserError gives one line on stderr and exit code 2. So do other errors, since a damaged file can
-    make any line fail; `python3 -X dev SCRIPT` shows where."""
+    make any line fail; `python3 -X dev SCRIPT` shows where. Ctrl-C, SIGTERM and SIGHUP are exceptions, so that no
+    incomplete file is left."""
     warnings.formatwarning = _warning
+    _open_output()
+    for name in {"SIGINT", "SIGTERM", "SIGHUP"} & set(dir(signal)):    # Windows has two of them
+        if signal.getsignal(getattr(signal, name)) in (signal.SIG_DFL, signal.default_int_handler):
+            signal.signal(getattr(signal, name), _interrupt)
     try:
-        main()
-        sys.stdout.flush()
+        try:
+            main()
+        finally:    # also after --help, which exits
+            sys.stdout.flush()
     except UserError as error:
         _stop(error.args[0])
+    except OutputLost as error:
+        _discard_output()
+        _stop(f"writing to standard output failed: {error}", OUTPUT_LOST)
+    except KeyboardInterrupt as interrupt:
+        _discard_output()
+        _stop(f"stopped by {interrupt}", STOPPED)
     except BrokenPipeError:  # the reader of the pipe closed it
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _discard_output()
     except OSError as error:
         # h5py raises OSError without errno for unreadable rows
         _stop(f"{error.filename or 'output'}: {error.strerror}" if error.errno else f"the file is damaged: {error}")
@@ -82,9 +133,13 @@ def run(main):
               "check the file with `rodsweep info FILE --verify`")
 
 
-def _stop(message):
-    print(f"{os.path.basename(sys.argv[0])}: {message}", file=sys.stderr)
-    sys.exit(2)
+def _discard_output():
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _stop(message, code=USER_ERROR):
+    print(f"{os.path.basename(sys.argv[0])}: {printable(message)}", file=sys.stderr)
+    sys.exit(code)
 
 
 def chosen_tasks(file, arguments):

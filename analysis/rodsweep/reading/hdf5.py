@@ -1,6 +1,7 @@
 """Opens the program's HDF5 files and decodes their texts. Raises SweepFileError if a file cannot be opened."""
 
 import os
+import re
 
 import h5py
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from rodsweep.reading.errors import SweepFileError
 
 PROGRAM = "rodsweep"
+CONTROL = re.compile("[\\x00-\\x08\\x0b-\\x1f\\x7f-\\x9f]")
 UNREADABLE = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError)  # exceptions from bad bytes
 
 
@@ -36,8 +38,14 @@ def as_text(value):
     return value.decode("utf-8", "replace").rstrip("\0") if isinstance(value, bytes) else str(value)
 
 
+def printable(text):
+    """Control characters other than newline and tab as "\\x1b" and so on, since a terminal would obey them; they can
+    come from a plug-in's message or a label."""
+    return text if text.isprintable() else CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
+
+
 def decoded(values):
-    """Fixed or variable strings of HDF5 as an array of str; other types unchanged."""
+    """Fixed or variable strings of HDF5 as an array of printable str; other types unchanged."""
     if values.dtype.kind in "SO":
-        return np.array([as_text(v) for v in values.ravel()], dtype=str).reshape(values.shape)
+        return np.array([printable(as_text(v)) for v in values.ravel()], dtype=str).reshape(values.shape)
     return values

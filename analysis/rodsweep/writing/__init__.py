@@ -1,1 +1,1 @@
-"""Rows of results files in other formats: CSV and Parquet, a block at a time."""
+"""Output files: whole or absent. Rows and systems of results files in other formats."""

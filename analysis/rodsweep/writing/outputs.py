@@ -23,11 +23,18 @@ def check(path, options):
 
 @contextlib.contextmanager
 def whole(path):
-    """A temporary name to write to. It becomes `path` when the file is complete, and is removed after an error."""
-    part = f"{path}.part"
+    """A temporary name to write to, with the same ending. It becomes `path` when the file is complete, and is removed
+    after an error."""
+    stem, ending = os.path.splitext(path)
+    part = f"{stem}.part{ending}"
     try:
         yield part
         os.replace(part, path)
     finally:
         if os.path.exists(part):
             os.remove(part)
+
+
+def write(path, text):
+    with whole(path) as part, open(part, "w", newline="", encoding="utf-8") as out:
+        out.write(text)
