@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "runner/dispatch/stop_signal.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/record.hpp"
@@ -64,6 +65,7 @@ std::vector<Part> open_parts(const std::vector<fs::path>& files, const FileSumma
 
 ExitCode execute(const MergeOptions& options, Console& console) {
   if (const std::string left = unfinished_text(options.output); !left.empty()) console.warn(left);
+  const StopSignal signal;
   const FileSummary first = inspect(options.files.front());
   const Plan plan = stored_plan(first);
   const std::vector<Part> parts = open_parts(options.files, first, plan);
@@ -74,6 +76,12 @@ ExitCode execute(const MergeOptions& options, Console& console) {
   std::vector<std::int64_t> damaged, different;
   TaskRecord record, other;
   for (const Task& task : plan.tasks()) {
+    if (signal.received() != 0) {
+      merged.close();
+      fs::remove(options.output);
+      console.note(fmt::format("stopped early by {}; nothing was written", signal_cause(signal.received())));
+      return ExitCode::stopped;
+    }
     bool taken = false, lost = false;
     for (const Part& part : parts) {
       if (!part.reader.done(task.index)) continue;
