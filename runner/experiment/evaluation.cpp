@@ -38,10 +38,10 @@ class ObservedSolve : public LinearSolve {
 
 /// Builds the scene and its systems and runs the steps; sets outcome and message. Returns false if abandoned between
 /// steps. If interrupted elsewhere, throws InterruptedComputation and sets no ratios: the last system may lack guesses.
-bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop,
+bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop, TimeSource now,
               const Stopwatch& watch, const ObserveSystem& observe) {
   const auto is_late = [&] { return spec.time_limit_s > 0 && watch.seconds() > spec.time_limit_s; };
-  const Interruptible interruptible([&] { return (stop && stop()) || is_late(); });
+  const Interruptible interruptible([&] { return (stop && stop()) || is_late(); }, now);
   Scene scene = build_scene(spec.scene);
   MeasuredSolve solve(scene, spec, record);
   std::optional<StoringSolve> storing;
@@ -74,14 +74,15 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
 
 }  // namespace
 
-static bool evaluate_alone(const Stopwatch& watch, const Task& task, const TaskSpec& spec, TaskRecord& record,
+static bool evaluate_alone(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
                            const StopRequested& stop, const ObserveSystem& observe) {
+  const Stopwatch watch(now);
   bool finished = true;
   try {
-    finished = simulate(task, spec, record, stop, watch, observe);
-  } catch (const InterruptedComputation&) {
+    finished = simulate(task, spec, record, stop, now, watch, observe);
+  } catch (const InterruptedComputation& interrupted) {
     finished = !(stop && stop());
-    if (finished) end_late(spec, record);
+    if (finished) end_late(spec, record, interrupted.where());
   } catch (const std::bad_alloc&) {
     record.outcome = TaskOutcome::error;
     record.message = out_of_memory_text();
@@ -100,12 +101,12 @@ bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
 bool evaluate_by_clock(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
                        const StopRequested& stop) {
   if (steps_in_batches(spec)) return evaluate_batch({{task, spec, &record}}, stop);
-  return evaluate_alone(Stopwatch(now), task, spec, record, stop, nullptr);
+  return evaluate_alone(now, task, spec, record, stop, nullptr);
 }
 
 bool evaluate_observed(const ObserveSystem& observe, const Task& task, const TaskSpec& spec, TaskRecord& record,
                        const StopRequested& stop) {
-  return evaluate_alone(Stopwatch(), task, spec, record, stop, observe);
+  return evaluate_alone(std::chrono::steady_clock::now, task, spec, record, stop, observe);
 }
 
 }  // namespace rodsweep

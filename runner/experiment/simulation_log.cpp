@@ -43,12 +43,13 @@ void log_segments(const Scene& scene, TaskRecord& record) {
 
 }  // namespace
 
-void end_late(const TaskSpec& spec, TaskRecord& record) {
+void end_late(const TaskSpec& spec, TaskRecord& record, const std::string& where) {
   int& step = record.tasks.steps_done[0];
   step = std::max(step, 0);  // the negative fill value until the scene is built
   record.outcome = TaskOutcome::timed_out;
-  record.message = fmt::format("step {}: the time limit of {:g} s has passed (task_time_limit_s or --task-time-limit)",
-                               step, spec.time_limit_s);
+  record.message =
+      fmt::format("step {}: the time limit of {:g} s has passed (task_time_limit_s or --task-time-limit){}{}", step,
+                  spec.time_limit_s, where.empty() ? "" : " in ", where);
 }
 
 SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene)

@@ -13,8 +13,9 @@
 
 namespace rodsweep {
 
-/// Records that a task timed out in its current step, or in step 0 if its scene was still being built.
-void end_late(const TaskSpec& spec, TaskRecord& record);
+/// Records that a task timed out in its current step, or in step 0 if its scene was still being built. `where`: the user's
+/// code that was running, or empty.
+void end_late(const TaskSpec& spec, TaskRecord& record, const std::string& where = "");
 
 class SimulationLog {
  public:

@@ -65,7 +65,7 @@ TEST_CASE("a time limit and a stop are met in the middle of a solve") {
   record.prepare(plan.task(0), axis_sizes(plan));
   int asked = 0;
   const auto stop = [&] { return record.tasks.steps_done[0] == 0 && ++asked > 2; };  // after set-up
-  CHECK_FALSE(evaluate(plan.task(0), plan.spec(0), record, stop));
+  CHECK_FALSE(evaluate_by_clock(test::HandClock::ticking, plan.task(0), plan.spec(0), record, stop));
   CHECK(record.tasks.steps_done[0] == 0);
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("a time limit and a stop are met while scene and systems are built") {
   const Plan plan = plan_of(job);
   TaskRecord record;
   record.prepare(plan.task(0), axis_sizes(plan));
-  CHECK_FALSE(evaluate(plan.task(0), plan.spec(0), record, [] { return true; }));
+  CHECK_FALSE(evaluate_by_clock(test::HandClock::ticking, plan.task(0), plan.spec(0), record, [] { return true; }));
   CHECK(record.tasks.steps_done[0] == -1);  // stopped too early for a log entry
 }
 

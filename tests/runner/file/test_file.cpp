@@ -12,6 +12,7 @@
 #include "runner/file/record.hpp"
 #include "runner/text/checksum.hpp"
 #include "solver/linear/interruption.hpp"
+#include "tests/hand_clock.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
@@ -54,14 +55,15 @@ TEST_CASE("the writing of a long record can be stopped, and then its task is pen
   record.prepare(task, axis_sizes(plan));
   bool asked = false;
   const auto stop = [&] { return asked = true; };
+  test::HandClock::set_tick(std::chrono::seconds(1));
   {
     ResultsFile file = ResultsFile::create(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
     {
-      const Interruptible interruptible(stop);
+      const Interruptible interruptible(stop, test::HandClock::ticking);
       CHECK_THROWS_AS(file.write(task, record), InterruptedComputation);
     }
     {
-      const Interruptible interruptible(stop);
+      const Interruptible interruptible(stop, test::HandClock::ticking);
       CHECK_THROWS_AS(TaskRecord().prepare(task, axis_sizes(plan)), InterruptedComputation);
     }
     CHECK(asked);

@@ -8,6 +8,7 @@
 #include "solver/factor/nested_dissection.hpp"
 #include "solver/linear/interruption.hpp"
 #include "solver/linear/linear_system.hpp"
+#include "tests/hand_clock.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_multifrontal_factor {
@@ -136,7 +137,8 @@ TEST_CASE("within a large front it is asked whether anybody waits, and an interr
   MultifrontalFactor factor = in_fronts(a, in_order(150));
   int asked = 0;
   {
-    const Interruptible interruptible([&] { return ++asked == 4; });
+    test::HandClock::set_tick(std::chrono::seconds(1));
+    const Interruptible interruptible([&] { return ++asked == 4; }, test::HandClock::ticking);
     CHECK_THROWS_AS(factor.factorise(a), InterruptedComputation);
   }
   CHECK(asked == 4);
