@@ -1,8 +1,11 @@
 #include "runner/dispatch/stop_signal.hpp"
 
+#include <time.h>
 #include <unistd.h>
 
 #include <cstdlib>
+
+#include "solver/plugin/user_call.hpp"
 
 namespace rodsweep {
 
@@ -10,9 +13,24 @@ namespace {
 
 volatile std::sig_atomic_t first_signal = 0;
 volatile std::sig_atomic_t from_parent = 0;  ///< whether the parent process sent it
+timespec received_at{};
+pid_t own_process = 0;
+
+/// Ends this process by the signal, once its handler has returned.
+void end_by(int signal) {
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
 
 void note(int signal, siginfo_t* told, void*) {
-  if (first_signal != 0) return;
+  if (getpid() != own_process) return end_by(signal);
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  if (first_signal != 0) {
+    if (user_code() && now.tv_sec - received_at.tv_sec > 1) end_by(signal);
+    return;
+  }
+  received_at = now;
   from_parent = told->si_code <= 0 && told->si_pid == getppid() ? 1 : 0;
   first_signal = signal;
 }
@@ -23,6 +41,7 @@ bool is_under_mpirun() { return std::getenv("OMPI_COMM_WORLD_RANK") != nullptr; 
 
 StopSignal::StopSignal() {
   first_signal = 0;
+  own_process = getpid();
   struct sigaction action {};
   action.sa_sigaction = note;
   action.sa_flags = SA_SIGINFO | SA_RESTART;  // a signal must not fail a write to the results file

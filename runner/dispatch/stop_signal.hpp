@@ -1,7 +1,9 @@
 // Turns the signals by which people and schedulers end programs into a request to stop: SIGTERM, SIGINT, SIGUSR1, SIGUSR2
 // (Grid Engine), SIGXCPU (PBS, Grid Engine), SIGHUP unless it is ignored (nohup). The handlers are installed for the
-// lifetime of the object; the destructor restores the old ones. The handler only records the first signal, so a second
-// one has no effect.
+// lifetime of the object; the destructor restores the old ones. The handler only records the first signal. A second one
+// has no effect, unless this process has been in a user's code since the first, for a second at least: such code may never
+// return, and then the second signal ends the process. Processes that such code forks end at the first signal, as they would
+// without the handler: Python's multiprocessing ends its workers with SIGTERM.
 #pragma once
 
 #include <array>

@@ -20,8 +20,10 @@ void check_mpi(int code, const char* call) {
 }
 
 MpiSession::MpiSession() {
-  int provided = 0;  // a training has threads; only the main thread calls MPI
-  check_mpi(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
+  int provided = 0;  // during a call of a user's code another thread calls MPI: one at a time
+  check_mpi(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
+  if (provided < MPI_THREAD_SERIALIZED)
+    throw MpiError("this MPI library does not support calls by several threads, one at a time (MPI_THREAD_SERIALIZED)");
   // Communicators derived from these, also those of HDF5 and PETSc, inherit the handler and return their errors.
   check_mpi(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
   check_mpi(MPI_Comm_set_errhandler(MPI_COMM_SELF, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");

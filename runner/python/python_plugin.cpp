@@ -6,12 +6,19 @@
 // the names and shapes of rodsweep.systems().
 #include <dlfcn.h>
 #include <omp.h>
+#include <pthread.h>
 #include <pybind11/embed.h>
 #include <pybind11/numpy.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -103,6 +110,57 @@ PYBIND11_EMBEDDED_MODULE(rodsweep_system, module) {
       .def_property_readonly("orientation", &System::orientation);
 }
 
+// A call whose result is no longer wanted is ended as Ctrl-C ends a program of Python: by a signal to the interpreter's
+// thread, which also ends sleeping and waiting. By default this signal does nothing.
+constexpr int interrupting = SIGURG;
+std::atomic<bool> unwanted{false};  ///< the call in progress
+const pthread_t thread_of_python = pthread_self();
+PyObject* interrupted = nullptr;  ///< the exception's class; `except Exception` does not catch it
+
+void install_interruption() {
+  interrupted = PyErr_NewException("rodsweep_system.Interrupted", PyExc_BaseException, nullptr);
+  if (!interrupted) throw py::error_already_set();
+  const auto handler = [](const py::args&) {
+    if (!unwanted) return;  // of an earlier call
+    PyErr_SetString(interrupted, "the result is no longer wanted");
+    throw py::error_already_set();
+  };
+  py::module_::import("signal").attr("signal")(interrupting, py::cpp_function(handler));
+}
+
+/// User's code may change the folder. It finds itself there again in its next call; the program stays in its own.
+class Visit {
+ public:
+  /// `folder`: where the code is, "" in the program's folder.
+  explicit Visit(std::string& folder) : folder_(folder) {
+    if (!folder_.empty()) go(folder_);
+    left = false;
+  }
+  ~Visit() {
+    std::error_code error;
+    if (left) folder_ = std::filesystem::current_path(error).native();
+    if (!folder_.empty()) go(home);
+  }
+  Visit(const Visit&) = delete;
+  Visit& operator=(const Visit&) = delete;
+
+  static void begin() {
+    home = std::filesystem::current_path().native();
+    PySys_AddAuditHook(notice, nullptr);
+  }
+
+ private:
+  static int notice(const char* event, PyObject*, void*) {
+    if (std::strcmp(event, "os.chdir") == 0) left = true;
+    return 0;
+  }
+  static void go(const std::string& folder) { [[maybe_unused]] const int failed = chdir(folder.c_str()); }
+
+  static inline std::string home;
+  static inline bool left = false;
+  std::string& folder_;
+};
+
 /// Starts the interpreter, once in a process.
 void start_python() {
   if (Py_IsInitialized()) return;
@@ -118,16 +176,21 @@ void start_python() {
   PyConfig_InitPythonConfig(&config);
   config.install_signal_handlers = 0;  // the program has its own
   config.write_bytecode = 0;           // nothing beside the user's files
-  if (const char* environment = std::getenv("VIRTUAL_ENV"))
-    PyConfig_SetBytesString(&config, &config.program_name, (std::string(environment) + "/bin/python").c_str());
+  // sys.executable, which multiprocessing starts: not the first python3 of the PATH, which may be of another version.
+  const char* environment = std::getenv("VIRTUAL_ENV");
+  const std::string python = environment ? std::string(environment) + "/bin/python" : RODSWEEP_PYTHON;
+  PyConfig_SetBytesString(&config, &config.program_name, python.c_str());
+  Visit::begin();
   py::initialize_interpreter(&config, 0, nullptr, false);
   py::module_::import("rodsweep_system");
+  install_interruption();
+  py::module_::import("numpy");  // arrays need it: not in the time of the first task
   py::module_ sys = py::module_::import("sys");
   sys.attr("stdout") = sys.attr("stderr");  // standard output has the program's results
   PyEval_SaveThread();
 }
 
-/// "ValueError: TEXT (my_guess.py:12 in propose)"
+/// "ValueError: TEXT (my_guess.py:12 in propose)"; of a call that was interrupted only the place
 std::string text_of(const py::error_already_set& error) {
   const auto text = [](const py::handle& object) -> std::string {
     try {
@@ -144,6 +207,7 @@ std::string text_of(const py::error_already_set& error) {
       places += (places.empty() ? "" : ", ") + file.substr(file.rfind('/') + 1) + ':' + text(frame.attr("lineno")) +
                 " in " + text(frame.attr("name"));
     }
+  if (error.matches(interrupted)) return places;
   const std::string what = text(error.type().attr("__name__")) + ": " + text(error.value());
   return places.empty() ? what : what + " (" + places + ')';
 }
@@ -161,6 +225,7 @@ void write(std::string text, char* error) {
 /// What `call` returns, or `failed` with the text of its exception.
 template <class Result, class Call>
 Result guarded(Result failed, char* error, const Call& call) {
+  unwanted = false;
   py::gil_scoped_acquire lock;
   try {
     return call();
@@ -189,12 +254,14 @@ void read(const py::object& returned, double* to, int size, const std::string& f
 
 struct Instance {
   py::object own;
+  std::string folder;  ///< see Visit
   std::vector<py::object> rods;
   int joints = 0;  ///< of the preconditioner's rod
 
   /// Calls a method with a system that lasts as long as the call.
   template <class... More>
-  py::object call(const char* method, const rodsweep_system& system, const More&... more) const {
+  py::object call(const char* method, const rodsweep_system& system, const More&... more) {
+    const Visit visit(folder);
     const std::size_t rod = rods.size() == 1 ? 0 : static_cast<std::size_t>(system.rod);
     py::object made = py::cast(System(system, rods[rod]));
     struct Ended {
@@ -205,7 +272,16 @@ struct Instance {
   }
 };
 
-py::object module_of(const std::string& path) {
+/// A file that was executed.
+struct Loaded {
+  py::object module;
+  std::string folder;  ///< see Visit
+};
+
+/// Each file is executed once, so that the weights it loads are read once.
+const Loaded& loaded(const std::string& path) {
+  static std::map<std::string, Loaded>& files = *new std::map<std::string, Loaded>;  // outlives the interpreter
+  if (const auto found = files.find(path); found != files.end()) return found->second;
   const std::size_t slash = path.rfind('/') + 1;
   const std::string folder = path.substr(0, slash), name = path.substr(slash, path.rfind('.') - slash);
   py::list places = py::module_::import("sys").attr("path");
@@ -213,10 +289,13 @@ py::object module_of(const std::string& path) {
   py::module_ util = py::module_::import("importlib.util");
   py::object spec = util.attr("spec_from_file_location")(name, path);
   if (spec.is_none()) throw std::invalid_argument("the name of a Python file ends in .py");
-  py::object module = util.attr("module_from_spec")(spec);
-  py::module_::import("sys").attr("modules")[name.c_str()] = module;
-  spec.attr("loader").attr("exec_module")(module);
-  return module;
+  Loaded made{util.attr("module_from_spec")(spec), ""};
+  py::module_::import("sys").attr("modules")[name.c_str()] = made.module;
+  {
+    const Visit visit(made.folder);
+    spec.attr("loader").attr("exec_module")(made.module);
+  }
+  return files.emplace(path, std::move(made)).first->second;
 }
 
 /// Without rods: loads the file and checks it.
@@ -231,16 +310,18 @@ void* create(const char* options, const rodsweep_rod* rods, int count, char* err
     return nullptr;
   }
   return guarded<void*>(nullptr, error, [&]() -> void* {
-    const py::object module = module_of(path);
+    const Loaded& file = loaded(path);
     const char* method = name == "Guess" ? "propose" : "apply";
-    const py::object own = py::getattr(module, name.c_str(), py::none());
+    const py::object own = py::getattr(file.module, name.c_str(), py::none());
     if (!py::hasattr(own, method)) throw std::invalid_argument("has no class " + name + " with " + method + "()");
     auto made = std::make_unique<Instance>();
+    made->folder = file.folder;
     for (int rod = 0; rod < count; ++rod) made->rods.push_back(rod_of(rods[rod]));
     if (count > 0) {
       made->joints = rods[0].joints;
       py::list list;
       for (const py::object& rod : made->rods) list.append(rod);
+      const Visit visit(made->folder);
       made->own = own(list, all.substr(second + 1));
     }
     return made.release();
@@ -267,7 +348,7 @@ int propose(void* instance, const rodsweep_system* system, double* x0, int* prod
 
 int accept(void* instance, const rodsweep_system* system, const double* solution, char* error) {
   return guarded(-1, error, [&] {
-    const auto* self = static_cast<Instance*>(instance);
+    auto* self = static_cast<Instance*>(instance);
     if (py::hasattr(self->own, "accept")) self->call("accept", *system, copied(solution, {6 * system->joints}));
     return 0;
   });
@@ -275,7 +356,7 @@ int accept(void* instance, const rodsweep_system* system, const double* solution
 
 int set_up(void* instance, const rodsweep_system* system, char* error) {
   return guarded(-1, error, [&] {
-    const auto* self = static_cast<Instance*>(instance);
+    auto* self = static_cast<Instance*>(instance);
     if (!py::hasattr(self->own, "set_up")) return 1;
     const py::object usable = self->call("set_up", *system);
     return usable.is_none() || usable.cast<bool>() ? 1 : 0;
@@ -284,7 +365,8 @@ int set_up(void* instance, const rodsweep_system* system, char* error) {
 
 int apply(void* instance, const double* r, double* z, char* error) {
   return guarded(-1, error, [&] {
-    const auto* self = static_cast<Instance*>(instance);
+    auto* self = static_cast<Instance*>(instance);
+    const Visit visit(self->folder);
     read(self->own.attr("apply")(copied(r, {6 * self->joints})), z, 6 * self->joints, "apply()");
     return 0;
   });
@@ -296,4 +378,9 @@ const rodsweep_plugin_functions* rodsweep_plugin() {
   static const rodsweep_plugin_functions functions{
       RODSWEEP_PLUGIN_VERSION, create, destroy, propose, accept, set_up, apply};
   return &functions;
+}
+
+void rodsweep_plugin_interrupt() {
+  unwanted = true;
+  pthread_kill(thread_of_python, interrupting);
 }

@@ -1,7 +1,9 @@
 #include "solver/plugin/plugin.hpp"
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <link.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -38,9 +40,17 @@ std::uintmax_t least_size(const std::filesystem::path& path) {
   return size;
 }
 
+/// Returns to the program's folder, which a library may have left. The system call takes as long as a short call of a
+/// library, so only the first and the last call of an instance have it.
+void return_to_folder() {
+  static const int folder = open(".", O_PATH | O_DIRECTORY | O_CLOEXEC);
+  [[maybe_unused]] const int failed = fchdir(folder);
+}
+
 }  // namespace
 
 Plugin::Plugin(const PluginSource& source) : name_(source.name) {
+  return_to_folder();
   // Without a slash dlopen() would search the system's folders.
   const std::filesystem::path path = std::filesystem::absolute(source.library);
   std::error_code unreadable;
@@ -48,6 +58,7 @@ Plugin::Plugin(const PluginSource& source) : name_(source.name) {
   if (!unreadable && size < least)  // dlopen() would map what is not there, and end the process
     throw error("is incomplete: it has " + std::to_string(size) + " of " + std::to_string(least) +
                 " bytes: compile or copy it again");
+  const UserCall call(name());
   handle_ = std::shared_ptr<void>(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL), [](void* handle) {
     if (handle) dlclose(handle);
   });
@@ -55,6 +66,7 @@ Plugin::Plugin(const PluginSource& source) : name_(source.name) {
   void* symbol = dlsym(handle_.get(), "rodsweep_plugin");
   if (!symbol) throw error("does not export rodsweep_plugin()");
   functions_ = reinterpret_cast<const rodsweep_plugin_functions* (*)()>(symbol)();
+  interrupt_ = reinterpret_cast<void (*)()>(dlsym(handle_.get(), "rodsweep_plugin_interrupt"));
   if (!functions_ || functions_->version != RODSWEEP_PLUGIN_VERSION)
     throw error("has version " + std::to_string(functions_ ? functions_->version : 0) + " of plugin.h; must be " +
                 std::to_string(RODSWEEP_PLUGIN_VERSION) + ": compile it again");
@@ -62,17 +74,27 @@ Plugin::Plugin(const PluginSource& source) : name_(source.name) {
 }
 
 PluginInstance::PluginInstance(const PluginSource& source, const Rod* rods, int count)
-    : plugin_(source), instance_(nullptr, functions().destroy), error_(RODSWEEP_ERROR_BYTES, '\0') {
+    : plugin_(source), error_(RODSWEEP_ERROR_BYTES, '\0'), instance_(nullptr, {&plugin_}) {
   std::vector<RodArrays> arrays(rods, rods + count);
   std::vector<rodsweep_rod> views;
   for (const RodArrays& rod : arrays) views.push_back(view(rod));
-  instance_.reset(functions().create(source.options.c_str(), views.data(), count, error()));
-  if (!instance_) throw error(std::string(error_.c_str()));
+  const bool made = within_call([&] {
+    instance_.reset(functions().create(source.options.c_str(), views.data(), count, error_.data()));
+    return_to_folder();
+    return instance_ != nullptr;
+  });
+  if (!made) throw error(error_.c_str());
 }
 
-int PluginInstance::checked(int returned) const {
-  if (returned < 0) throw error(std::string(error_.c_str()));
-  return returned;
+void PluginInstance::Destroy::operator()(void* instance) const {
+  const UserCall call(plugin->name(), plugin->interrupt());
+  plugin->functions().destroy(instance);
+  return_to_folder();
+}
+
+void PluginInstance::throw_interrupted() const {
+  const std::string text = error_.c_str();
+  check_interrupted(0, plugin_.name() + (text.empty() ? text : " (" + text + ')'));
 }
 
 rodsweep_system plugin_system(const Rod& rod, const LinearSystem& system, const SolvePosition& at) {

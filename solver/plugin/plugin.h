@@ -4,7 +4,8 @@
  * or as {"preconditioner": "own", "own_preconditioner": {"library": "libmine.so"}} in its "solve". Every task makes
  * instances of its own. An error ends the task with its text: write it to `error`, with a zero at the end and at most
  * RODSWEEP_ERROR_BYTES bytes, and return the value that says so. Numbers are doubles in SI units; pointers are valid
- * during the call. docs/extending.md has an example. */
+ * during the call. After a call floating-point rounding is as before, and after create and destroy the current folder.
+ * docs/extending.md has an example. */
 #ifndef RODSWEEP_PLUGIN_H
 #define RODSWEEP_PLUGIN_H
 
@@ -65,6 +66,11 @@ typedef struct rodsweep_plugin_functions {
 
 /* Exported by the library. */
 RODSWEEP_EXPORT const rodsweep_plugin_functions* rodsweep_plugin(void);
+
+/* The library may export this too. It is called from another thread, every second, while one of the functions above runs
+ * whose result is no longer wanted (a time limit, Ctrl-C), and makes that function return soon. Without it the function is
+ * waited for, up to a minute; then it counts as hung. */
+RODSWEEP_EXPORT void rodsweep_plugin_interrupt(void);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,6 @@
 // A shared library with guesses and preconditioners of the user's (plugin.h), and an instance of it. PluginError: the
-// library cannot be loaded, has another version, lacks a function or reports an error.
+// library cannot be loaded, has another version, lacks a function or reports an error. A call whose result is no longer
+// wanted ends in InterruptedComputation, with the library and its text.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include "solver/guess/initial_guess.hpp"
 #include "solver/plugin/plugin.h"
 #include "solver/plugin/printable.hpp"
+#include "solver/plugin/user_call.hpp"
 
 namespace rodsweep {
 
@@ -29,6 +31,9 @@ class Plugin {
  public:
   explicit Plugin(const PluginSource& source);
   const rodsweep_plugin_functions& functions() const { return *functions_; }
+  const char* name() const { return name_.c_str(); }
+  /// rodsweep_plugin_interrupt(), or null.
+  void (*interrupt() const)() { return interrupt_; }
   /// An error of the library, with its name.
   PluginError error(const std::string& text) const { return PluginError(printable(name_ + ": " + text)); }
 
@@ -36,24 +41,45 @@ class Plugin {
   std::string name_;
   std::shared_ptr<void> handle_;
   const rodsweep_plugin_functions* functions_ = nullptr;
+  void (*interrupt_)() = nullptr;
 };
 
-/// An instance for some rods. Its functions' last argument is error().
+/// An instance for some rods.
 class PluginInstance {
  public:
   PluginInstance(const PluginSource& source, const Rod* rods, int count);
+  PluginInstance(const PluginInstance&) = delete;
+  PluginInstance& operator=(const PluginInstance&) = delete;
 
   const rodsweep_plugin_functions& functions() const { return plugin_.functions(); }
-  void* get() const { return instance_.get(); }
-  char* error() { return error_.data(); }
-  /// Returns what a function returned; throws if that says that error() has a text.
-  int checked(int returned) const;
+  /// Returns what a function of the instance returns. Its first and last argument, instance and error, are added.
+  template <class Function, class... Arguments>
+  int call(Function function, Arguments... arguments) {
+    const int returned = within_call([&] { return function(instance_.get(), arguments..., error_.data()); });
+    if (returned < 0) throw error(error_.c_str());
+    return returned;
+  }
   PluginError error(const std::string& text) const { return plugin_.error(text); }
 
  private:
+  struct Destroy {
+    const Plugin* plugin;
+    void operator()(void* instance) const;
+  };
+  template <class Part>
+  auto within_call(const Part& part) {
+    const auto returned = [&] {
+      const UserCall call(plugin_.name(), plugin_.interrupt());
+      return part();
+    }();
+    if (is_interrupted(0)) throw_interrupted();
+    return returned;
+  }
+  void throw_interrupted() const;
+
   Plugin plugin_;
-  std::unique_ptr<void, void (*)(void*)> instance_;
   std::string error_;  ///< RODSWEEP_ERROR_BYTES for the library to write to
+  std::unique_ptr<void, Destroy> instance_;
 };
 
 /// What a plug-in is told of a system. It points into the arguments.

@@ -12,16 +12,14 @@ PluginGuess::PluginGuess(const PluginSource& source, const Scene& scene)
 Proposal PluginGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
   system_ = plugin_system(scene_.rods[static_cast<std::size_t>(at.rod)], system, at);
   int products = 0;
-  const bool nonzero = instance_.checked(instance_.functions().propose(instance_.get(), &system_, x0.data(), &products,
-                                                                       instance_.error())) > 0;
+  const bool nonzero = instance_.call(instance_.functions().propose, &system_, x0.data(), &products) > 0;
   if (!nonzero) x0.setZero();
   if (!x0.allFinite()) throw instance_.error("proposed a guess that is not finite");
   return {nonzero, std::max(products, 0)};
 }
 
 void PluginGuess::accept(const SolvePosition&, const VectorX& solution) {
-  if (const auto accept = instance_.functions().accept)
-    instance_.checked(accept(instance_.get(), &system_, solution.data(), instance_.error()));
+  if (const auto accept = instance_.functions().accept) instance_.call(accept, &system_, solution.data());
 }
 
 }  // namespace rodsweep

@@ -10,11 +10,14 @@ PluginPreconditioner::PluginPreconditioner(const PluginSource& source, const Rod
 
 bool PluginPreconditioner::set_up(const BlockMatrix&) {
   const rodsweep_system system = plugin_system(rod_, system_, {-1, -1, index_});
-  return instance_.checked(instance_.functions().set_up(instance_.get(), &system, instance_.error())) > 0;
+  return instance_.call(instance_.functions().set_up, &system) > 0;
 }
 
 void PluginPreconditioner::apply(const double* r, double* z) {
-  instance_.checked(instance_.functions().apply(instance_.get(), r, z, instance_.error()));
+  instance_.call(instance_.functions().apply, r, z);
+  const Eigen::Index size = 6 * rod_.joint_count();
+  if (!VectorX::Map(z, size).allFinite() && VectorX::Map(r, size).allFinite())
+    throw instance_.error("apply() gave a vector that is not finite");
 }
 
 }  // namespace rodsweep

@@ -5,8 +5,10 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 
 #include "runner/dispatch/stop_signal.hpp"
+#include "solver/plugin/user_call.hpp"
 #include "tests/runner/dispatch_examples.hpp"
 
 using namespace rodsweep;
@@ -132,6 +134,47 @@ TEST_CASE("signals of all schedulers are noted; a hang-up that nohup ignores sta
     CHECK(signal.received() == 0);
   }
   CHECK(std::signal(SIGHUP, before) == SIG_IGN);
+}
+
+/// Calls `run` in a child process.
+template <class Run>
+pid_t forked(const Run& run) {
+  const pid_t child = fork();
+  if (child == 0) {
+    run();
+    _exit(0);
+  }
+  return child;
+}
+
+/// The signal that ends it; 0 if it ends otherwise.
+int ended_by(pid_t child) {
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+}
+
+TEST_CASE("a second signal ends a process that stays in a user's code for a second") {
+  const auto twice = [](bool in_user_code, unsigned seconds) {
+    return forked([&] {
+      const StopSignal signal;
+      std::optional<UserCall> call;
+      if (in_user_code) call.emplace("mine.py");
+      raise(SIGTERM);
+      sleep(seconds);
+      raise(SIGINT);
+    });
+  };
+  const pid_t stuck = twice(true, 2), at_once = twice(true, 0), elsewhere = twice(false, 2);
+  CHECK(ended_by(stuck) == SIGINT);
+  CHECK(ended_by(at_once) == 0);  // a launcher may send one signal twice
+  CHECK(ended_by(elsewhere) == 0);
+}
+
+TEST_CASE("a process that was forked ends by the signal that its parent only notes") {
+  const StopSignal signal;
+  CHECK(ended_by(forked([] { raise(SIGTERM); })) == SIGTERM);
+  CHECK(signal.received() == 0);
 }
 
 TEST_CASE("of a signal that mpirun sent it is said that Ctrl-C may have been the reason") {

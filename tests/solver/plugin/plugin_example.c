@@ -1,9 +1,13 @@
 /* The plug-in of the tests: the last solution of the same rod and Newton iteration, and the diagonal as preconditioner. Its
- * options ask for other things: "b": x0 = A b; "nan": x0 is not a number; "create", "propose", "accept", "set_up", "apply":
- * an error there; "none": no preconditioner. */
+ * options ask for other things: "b": x0 = A b; "nan": x0 and z are not numbers; "create", "propose", "accept", "set_up",
+ * "apply": an error there; "none": no preconditioner; "rounds": each function changes how numbers are rounded; "leaves":
+ * create and destroy change the folder; "endless": propose returns when it is interrupted; "forks": it returns twice. */
+#include <fenv.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "solver/plugin/plugin.h"
 
@@ -17,6 +21,21 @@ struct guess {
   double* inverse_diagonal;
 };
 
+static volatile int interrupted;
+
+void rodsweep_plugin_interrupt(void) { interrupted = 1; }
+
+/* Does to the process what "rounds" and "leaves" ask for. */
+static void disturb(const struct guess* self) {
+  if (strcmp(self->options, "rounds") == 0) {
+    fesetround(FE_UPWARD);
+#ifdef __SSE2__
+    __builtin_ia32_ldmxcsr(__builtin_ia32_stmxcsr() | 0x8040); /* tiny numbers are zero */
+#endif
+  }
+  if (strcmp(self->options, "leaves") == 0 && chdir("/") != 0) abort();
+}
+
 static void* create(const char* options, const rodsweep_rod* rods, int count, char* error) {
   struct guess* self = calloc(1, sizeof *self);
   snprintf(self->options, sizeof self->options, "%s", options);
@@ -25,6 +44,7 @@ static void* create(const char* options, const rodsweep_rod* rods, int count, ch
     free(self);
     return NULL;
   }
+  disturb(self);
   for (int rod = 0; rod < count; ++rod) {
     self->joints[rod] = rods[rod].joints;
     for (int newton = 0; newton < most_newton; ++newton) {
@@ -37,6 +57,7 @@ static void* create(const char* options, const rodsweep_rod* rods, int count, ch
 
 static void destroy(void* instance) {
   struct guess* self = instance;
+  disturb(self);
   for (int rod = 0; rod < most_rods; ++rod)
     for (int newton = 0; newton < most_newton; ++newton) free(self->last[rod][newton]);
   free(self->inverse_diagonal);
@@ -59,6 +80,19 @@ static int propose(void* instance, const rodsweep_system* system, double* x0, in
     snprintf(error, RODSWEEP_ERROR_BYTES, "no guess in step %d", system->step);
     return -1;
   }
+  disturb(self);
+  if (strcmp(self->options, "endless") == 0) {
+    for (interrupted = 0; !interrupted;) usleep(1000);
+    snprintf(error, RODSWEEP_ERROR_BYTES, "given up in step %d", system->step);
+    return -1;
+  }
+  if (strcmp(self->options, "forks") == 0) {
+    int status = 0;
+    const pid_t child = fork();
+    if (child > 0) waitpid(child, &status, 0);
+    x0[0] = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return 1;
+  }
   if (strcmp(self->options, "b") == 0) {
     multiply(system, system->b, x0);
     *products = 1;
@@ -72,6 +106,7 @@ static int propose(void* instance, const rodsweep_system* system, double* x0, in
 
 static int accept(void* instance, const rodsweep_system* system, const double* solution, char* error) {
   struct guess* self = instance;
+  disturb(self);
   if (strcmp(self->options, "accept") == 0) {
     snprintf(error, RODSWEEP_ERROR_BYTES, "the solution of step %d is not wanted", system->step);
     return -1;
@@ -83,6 +118,7 @@ static int accept(void* instance, const rodsweep_system* system, const double* s
 
 static int set_up(void* instance, const rodsweep_system* system, char* error) {
   struct guess* self = instance;
+  disturb(self);
   if (strcmp(self->options, "set_up") == 0) {
     snprintf(error, RODSWEEP_ERROR_BYTES, "no preconditioner in step %d", system->step);
     return -1;
@@ -97,11 +133,13 @@ static int set_up(void* instance, const rodsweep_system* system, char* error) {
 
 static int apply(void* instance, const double* r, double* z, char* error) {
   const struct guess* self = instance;
+  disturb(self);
   if (strcmp(self->options, "apply") == 0) {
     snprintf(error, RODSWEEP_ERROR_BYTES, "not applied");
     return -1;
   }
   for (int i = 0; i < 6 * self->joints[0]; ++i) z[i] = r[i] * self->inverse_diagonal[i];
+  if (strcmp(self->options, "nan") == 0) z[0] = 0.0 / 0.0;
   return 0;
 }
 

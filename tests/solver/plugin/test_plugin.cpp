@@ -1,5 +1,9 @@
 // A guess and a preconditioner from a shared library: what they see, what they return, and their errors.
 #include <catch2/catch.hpp>
+#include <cfenv>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
 
 #include "solver/cg/cg_solver.hpp"
 #include "solver/plugin/plugin_guess.hpp"
@@ -87,6 +91,71 @@ TEST_CASE("errors of a preconditioner leave CG as exceptions, and none for this 
   for (const Norm norm : {Norm::true_residual, Norm::natural})
     CHECK_THROWS_WITH(solve(one, example("apply"), x, norm), Contains("plug-in example: not applied"));
   CHECK(solve(one, example("none"), x).outcome == SolveOutcome::indefinite);
+}
+
+TEST_CASE("a preconditioner that gives no numbers is named, in both norms") {
+  OneRod one;
+  VectorX x = VectorX::Zero(one.size());
+  for (const Norm norm : {Norm::true_residual, Norm::natural})
+    CHECK_THROWS_WITH(solve(one, example("nan"), x, norm), "plug-in example: apply() gave a vector that is not finite");
+}
+
+bool rounds_as_ever() {
+  volatile double third = 1, tiny = std::numeric_limits<double>::min();
+  third = third / 3, tiny = tiny / 2;
+  return std::fegetround() == FE_TONEAREST && 3 * third == 1 && tiny > 0;
+}
+
+TEST_CASE("numbers are rounded as before, whatever a function of a plug-in changes") {
+  OneRod one;
+  const VectorX r = one.system.rhs();
+  VectorX x = VectorX::Zero(one.size());
+  {
+    PluginGuess guess(example("rounds"), one.scene);
+    CHECK(rounds_as_ever());
+    guess.propose(one.system, {0, 0, 0}, x);
+    CHECK(rounds_as_ever());
+    guess.accept({0, 0, 0}, x);
+    CHECK(rounds_as_ever());
+    PluginPreconditioner preconditioner(example("rounds"), one.scene.rods[0], 0, one.system);
+    preconditioner.set_up(one.system.matrix());
+    CHECK(rounds_as_ever());
+    preconditioner.apply(r.data(), x.data());
+    CHECK(rounds_as_ever());
+  }
+  CHECK(rounds_as_ever());
+}
+
+TEST_CASE("the program stays in its folder when a plug-in goes to another") {
+  OneRod one;
+  const auto folder = std::filesystem::current_path();
+  {
+    const PluginGuess guess(example("leaves"), one.scene);
+    CHECK(std::filesystem::current_path() == folder);
+  }
+  CHECK(std::filesystem::current_path() == folder);
+}
+
+TEST_CASE("a call whose result is no longer wanted is interrupted, and it is said what ran") {
+  OneRod one;
+  VectorX x(one.size());
+  PluginGuess guess(example("endless"), one.scene);
+  const Interruptible interruptible([] { return true; });
+  try {
+    guess.propose(one.system, {7, 0, 0}, x);
+    FAIL("nothing was thrown");
+  } catch (const InterruptedComputation& interrupted) {
+    CHECK(interrupted.where() == "plug-in example (given up in step 7)");
+  }
+}
+
+TEST_CASE("a process that a plug-in forks ends with the call") {
+  OneRod one;
+  VectorX x(one.size());
+  PluginGuess guess(example("forks"), one.scene);
+  const Interruptible interruptible([] { return false; });
+  guess.propose(one.system, {0, 0, 0}, x);
+  CHECK(x[0] == EXIT_FAILURE);
 }
 
 TEST_CASE("a library that is none, or exports no plug-in, is refused") {
