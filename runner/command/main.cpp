@@ -10,6 +10,7 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -18,14 +19,18 @@
 #include <exception>
 
 #include "runner/command/command_line.hpp"
+#include "runner/command/foreign_exit.hpp"
 #include "runner/command/launch.hpp"
 #include "runner/command/next_line.hpp"
+#include "runner/command/process_end.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/console.hpp"
 #include "solver/cg/petsc_session.hpp"
+#include "solver/linear/interruption.hpp"
+#include "solver/plugin/user_call.hpp"
 
 namespace rodsweep {
 
@@ -55,8 +60,25 @@ void leave_if_broken(const MpiSession& mpi, const std::exception& error, Console
   if (!hdf5_is_broken()) return;
   console.error(error.what());
   std::fflush(nullptr);
+  process_ends();
   if (mpi.size() > 1) MPI_Abort(mpi.world(), static_cast<int>(ExitCode::user_error));
-  std::_Exit(static_cast<int>(ExitCode::user_error));
+  leave(ExitCode::user_error);
+}
+
+constexpr const char* kept = ". Finished tasks are kept, and --resume continues";
+
+void warn_of_long_call() {
+  static std::atomic<bool> is_told{false};
+  if (!is_told.exchange(true))
+    Console(true).warn(fmt::format("{} has not returned for a minute; --task-time-limit ends such tasks", user_code()));
+}
+
+/// Ends the only rank of a run. Where there are others, its heartbeats end, and they do without it.
+void leave_stuck() {
+  fmt::print(stderr,
+             "rodsweep: error: {} has not returned, a minute after a time limit or a signal; it must end by itself{}\n",
+             user_code(), kept);
+  leave(ExitCode::stopped);
 }
 
 /// Runs a command on rank 0. All ranks start MPI, because MPI_Init is collective.
@@ -100,6 +122,8 @@ ExitCode start(const RunOptions& options, Console& console) {
   if (options.workers.value_or(1) > 1 && !is_launched())
     return launch(ranks_of(options, read_job(options.job, MissingFiles::accepted)), console);
   const MpiSession mpi;
+  expect_no_exit(ExitCode::stopped, kept);
+  handle_calls({warn_of_long_call, mpi.size() == 1 ? leave_stuck : nullptr});
   try {
     return execute(options, mpi, console);
   } catch (const CollectiveError& error) {
@@ -114,6 +138,7 @@ ExitCode start(const RunOptions& options, Console& console) {
     fmt::print(stderr, "rodsweep: the file keeps all finished work. Fix the cause, then continue with: {}\n",
                run_line(again, mpi.size()));
     std::fflush(nullptr);
+    process_ends();
     MPI_Abort(mpi.world(), static_cast<int>(ExitCode::stopped));
     std::abort();
   }
@@ -149,6 +174,7 @@ int main(int argc, char** argv) {
     std::raise(SIGPIPE);
   }
   if (failure != 0 && code == ExitCode::ok) code = ExitCode::output_lost;
-  if (hdf5_is_broken()) std::_Exit(static_cast<int>(code));
+  if (hdf5_is_broken()) leave(code);
+  process_ends();
   return static_cast<int>(code);
 }

@@ -16,6 +16,7 @@
 
 #include "runner/command/launch.hpp"
 #include "runner/command/next_line.hpp"
+#include "runner/command/process_end.hpp"
 #include "runner/command/sweep_summary.hpp"
 #include "runner/command/sweep_tasks.hpp"
 #include "runner/dispatch/master.hpp"
@@ -192,13 +193,14 @@ bool ranks_exit_alone() {
 /// Exits a worker after ranks were lost, without MPI_Finalize, which would wait for them.
 [[noreturn]] void exit_worker() {
   if (!ranks_exit_alone()) std::this_thread::sleep_for(std::chrono::minutes(1));  // until the master's MPI_Abort
-  std::_Exit(static_cast<int>(ExitCode::ok));
+  leave(ExitCode::ok);
 }
 
 /// The same for the master.
 [[noreturn]] void exit_master(const MpiSession& mpi, ExitCode code) {
+  process_ends();
   if (!ranks_exit_alone()) MPI_Abort(mpi.world(), static_cast<int>(code));
-  std::_Exit(static_cast<int>(code));
+  leave(code);
 }
 
 Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pending, Progress& progress,
@@ -275,6 +277,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     if (options.task_time_limit_s) made.set_task_time_limit(*options.task_time_limit_s);
     return made;
   });
+  collectively(mpi.world(), [&] { load_python(job); });
   const StopSignal signal;  // from here until the file is closed, a signal only requests a stop
   const fs::path path = collectively(mpi.world(), [&] { return output_of(options, job.name); });
   read_knn_sets(plan, mpi.world());

@@ -10,6 +10,13 @@
 namespace rodsweep {
 namespace {
 
+/// Executes a file of Python; does nothing with another.
+void open_python(const std::filesystem::path& path, FileKind kind) {
+  if (kind == FileKind::python_guess) PluginInstance(plugin_source({path, ""}, PythonClass::guess), nullptr, 0);
+  if (kind == FileKind::python_preconditioner)
+    PluginInstance(plugin_source({path, ""}, PythonClass::preconditioner), nullptr, 0);
+}
+
 void open_input(const std::filesystem::path& path, FileKind kind) {
   switch (kind) {
     case FileKind::any: return;
@@ -18,10 +25,8 @@ void open_input(const std::filesystem::path& path, FileKind kind) {
     case FileKind::skeleton:
     case FileKind::curves: return;  // the plan reads these
     case FileKind::plugin: Plugin(plugin_source({path, ""})); return;
-    case FileKind::python_guess: PluginInstance(plugin_source({path, ""}, PythonClass::guess), nullptr, 0); return;
-    case FileKind::python_preconditioner:
-      PluginInstance(plugin_source({path, ""}, PythonClass::preconditioner), nullptr, 0);
-      return;
+    case FileKind::python_guess:
+    case FileKind::python_preconditioner: open_python(path, kind); return;
   }
 }
 
@@ -40,6 +45,11 @@ void check_inputs(const Job& job) {
       }
     }
   }
+}
+
+void load_python(const Job& job) {
+  for (const auto& [written, file] : job.files)
+    for (const FileUse& use : file.uses) open_python(file.path, use.kind);
 }
 
 Plan checked_plan(const Job& job) {
