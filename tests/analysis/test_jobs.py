@@ -96,17 +96,23 @@ class Runs(WithJobs):
                 self.assertEqual(exit_codes(results), [4, 0])
 
     def test_a_run_stops_when_python_is_killed(self):
-        tiny(samples=1000, time={"step_s": 0.02, "steps": 100}).write("job.json")
-        code = ("import os; from rodsweep import jobs; jobs.line = lambda: lambda text: os.kill(os.getpid(), 9); "
-                "jobs.Job.read('job.json').run()")
-        killed = subprocess.run([sys.executable, "-B", "-c", code], check=False,
-                                env={**os.environ, "PYTHONPATH": synthetic.ANALYSIS})
-        self.assertEqual(killed.returncode, -signal.SIGKILL)
-        begin, ended = time.monotonic(), [-1]
-        while ended != [4] and time.monotonic() < begin + 60:
-            with rodsweep.open("results/tiny.h5") as part:
-                ended = exit_codes(part)
-        self.assertEqual(ended, [4])
+        Path("endless.py").write_text("class Guess:\n    def __init__(self, rods, options): pass\n"
+                                      "    def propose(self, system):\n        while True: pass\n", encoding="utf-8")
+        for guess in ("previous", {"python": {"file": "endless.py"}}):
+            with self.subTest(guess=guess):
+                job = tiny(samples=1000, time={"step_s": 0.02, "steps": 100}, guesses=["zero", guess])
+                job.write("job.json")
+                code = ("import os; from rodsweep import jobs; jobs.line = lambda: lambda text: os.kill(os.getpid(), 9); "
+                        "jobs.Job.read('job.json').run()")
+                killed = subprocess.run([sys.executable, "-B", "-c", code], check=False,
+                                        env={**os.environ, "PYTHONPATH": synthetic.ANALYSIS})
+                self.assertEqual(killed.returncode, -signal.SIGKILL)
+                begin, ended = time.monotonic(), [-1]
+                while ended != [4] and time.monotonic() < begin + 60:
+                    with rodsweep.open("results/tiny.h5") as part:
+                        ended = exit_codes(part)
+                self.assertEqual(ended, [4])
+                os.remove("results/tiny.h5")
 
     def test_it_runs_where_there_are_no_pseudo_terminals(self):
         with unittest.mock.patch("pty.openpty", side_effect=OSError("out of pty devices")):

@@ -1,15 +1,17 @@
 """Guesses and preconditioners in Python: those of `rodsweep new` are as good as the same of the program, they see the
-systems that `rodsweep systems` writes, and their errors reach the user."""
+systems that `rodsweep systems` writes, their errors reach the user, and what they do to the process stays with them."""
 
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
+import time
 import unittest
 
 import h5py
-from program import InAFolder
+from program import RODSWEEP, STOPPED, TASKS_FAILED, InAFolder
 
 ANALYSIS = os.path.join(os.environ["SOURCE_DIR"], "analysis")
 
@@ -35,7 +37,7 @@ def guess(body):
     return f"import numpy as np\nclass Guess:\n    def __init__(self, rods, options): pass\n    {body}\n"
 
 
-class Python(InAFolder):
+class WithPython(InAFolder):
     def write(self, name, text):
         with open(name, "w", encoding="utf-8") as file:
             file.write(text)
@@ -55,12 +57,19 @@ class Python(InAFolder):
         for left in filter(os.path.exists, ["s.h5"]):
             os.remove(left)
         self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5", code=3)
+        return self.message()
+
+    def message(self, outcome="error"):
+        """That of the first task in s.h5."""
         with h5py.File("s.h5") as file:
+            self.assertEqual(file["/tasks/outcome"][0].rstrip(b"\0").decode(), outcome)
             return file["/tasks/message"][0].decode()
 
     def new(self, kind, name):
         subprocess.run([os.path.join(ANALYSIS, "new.py"), kind, name], check=True, capture_output=True)
 
+
+class Python(WithPython):
     def test_an_exception_without_a_text_is_named(self):
         rude = "\nclass Rude(Exception):\n    def __str__(self): return 1 / 0\n"
         said = self.error(guess("def propose(self, system): raise Rude") + rude)
@@ -155,6 +164,21 @@ class Python(InAFolder):
             file.write("# changed\n")
         self.assertIn("input files of the job have changed", self.ran("run", "s.json", "-o", "s.h5", "--resume", code=2).stderr)
 
+    def test_a_preconditioner_that_gives_no_numbers_is_named(self):
+        self.write("mine.py", "class Preconditioner:\n    def __init__(self, rods, options): pass\n"
+                              "    def apply(self, r): return r * float('nan')\n")
+        self.ran("run", self.job(solve={"method": "cg", "preconditioner": "python",
+                                        "python_preconditioner": {"file": "mine.py"}}), "-o", "s.h5", code=TASKS_FAILED)
+        self.assertIn("mine.py: apply() gave a vector that is not finite", self.message())
+
+    def test_a_file_is_executed_once_and_each_task_has_an_instance(self):
+        self.write("mine.py", "import numpy as np\nlog = open('log', 'a')\nprint('file', file=log, flush=True)\n"
+                              "class Guess:\n    def __init__(self, rods, options): print('task', file=log, flush=True)\n"
+                              "    def propose(self, system): return None\n")
+        self.ran("run", self.job({"python": {"file": "mine.py"}}, **THREE_TASKS), "-o", "s.h5")
+        with open("log", encoding="utf-8") as log:
+            self.assertEqual(log.read().split(), ["file", "task", "task", "task"])
+
     @unittest.skipUnless(os.environ.get("TRAINING"), "takes a minute and needs python3-torch")
     def test_the_network_of_the_page_saves_iterations(self):
         with open(os.path.join(os.environ["SOURCE_DIR"], "docs", "own-guess.md"), encoding="utf-8") as page:
@@ -173,5 +197,111 @@ class Python(InAFolder):
         self.assertLess(ratio, 0.7)
 
 
+ENDLESS = guess("def propose(self, system):\n        if system.step == 2:\n            open('begun', 'w').close()\n"
+                "            {}\n        return None")
+LOOP, SLEEP = ENDLESS.format("while True: pass"), ENDLESS.format("__import__('time').sleep(1000)")
+DEAF = ENDLESS.format("sum(__import__('itertools').repeat(0))")    # in compiled code
+THREE_TASKS = {"time": {"step_s": 0.02, "steps": {"grid": [2, 3, 4]}}}
+
+
+class Calls(WithPython):
+    """What a user's code may do to the program that calls it."""
+
+    def begun(self, *words):
+        """The program with the guess in mine.py, once that is in its endless call."""
+        process = subprocess.Popen([RODSWEEP, "run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5", *words],
+                                   stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60
+        while not os.path.exists("begun") and process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.05)
+        self.assertTrue(os.path.exists("begun"))
+        os.remove("begun")
+        return process
+
+    def test_the_time_limit_of_the_task_ends_an_endless_call_and_its_line_is_named(self):
+        for text in (LOOP, SLEEP):
+            self.write("mine.py", text)
+            self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5", "--task-time-limit", "3",
+                     code=TASKS_FAILED)
+            self.assertIn("step 2: the time limit of 3 s has passed (task_time_limit_s or --task-time-limit) "
+                          "in mine.py (mine.py:7 in propose)", self.message("timed_out"))
+            os.remove("s.h5")
+
+    def test_a_signal_ends_an_endless_call(self):
+        for text, number, words, code in ((LOOP, signal.SIGINT, [], STOPPED), (SLEEP, signal.SIGTERM, [], STOPPED),
+                                          (LOOP, signal.SIGTERM, ["-n", "2"], 1)):
+            with self.subTest(number=number, words=words):
+                self.write("mine.py", text)
+                process = self.begun(*words)
+                process.send_signal(number)
+                self.assertEqual(process.wait(60), code)    # of mpirun: 1
+                with h5py.File("s.h5") as file:
+                    self.assertEqual(file["/runs/exit_code"][0], STOPPED)
+                os.remove("s.h5")
+
+    def test_a_second_signal_ends_a_process_whose_call_goes_on(self):
+        self.write("mine.py", DEAF)
+        process = self.begun()
+        process.send_signal(signal.SIGINT)
+        while process.poll() is None:
+            time.sleep(1)
+            process.send_signal(signal.SIGINT)
+        self.assertEqual(process.returncode, -signal.SIGINT)
+
+    def test_a_worker_in_a_long_call_is_alive(self):
+        self.write("mine.py", guess("def propose(self, system): return None").replace("pass", "__import__('time').sleep(5)"))
+        ran = self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5", "-n", "2", "--worker-timeout", "2")
+        self.assertNotIn("timed out", ran.stderr)
+
+    def test_no_task_has_the_time_in_which_a_file_is_loaded(self):
+        self.write("mine.py", "__import__('time').sleep(4)\n" + guess("def propose(self, system): return None"))
+        self.ran("run", self.job({"python": {"file": "mine.py"}}, **THREE_TASKS), "-o", "s.h5", "-n", "2",
+                 "--task-time-limit", "3")
+
+    def test_a_process_that_user_code_ends_is_an_error_with_its_name(self):
+        for end in ("__import__('os')._exit(0)", "__import__('ctypes').CDLL(None).exit(0)"):
+            for words in ([], ["-n", "2"]):
+                with self.subTest(end=end, words=words):
+                    self.write("mine.py", guess(f"def propose(self, system): {end}"))
+                    ran = self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5", *words, code=STOPPED)
+                    self.assertIn("rodsweep: error: mine.py ended this process (exit status 0); it must return", ran.stderr)
+                    os.remove("s.h5")
+
+    def test_it_may_go_to_another_folder_which_is_its_own(self):
+        os.makedirs("code/weights")
+        self.write("code/weights/file", "text")
+        self.write("code/mine.py", "import os\nos.chdir(os.path.dirname(__file__))\nclass Guess:\n"
+                                   "    def __init__(self, rods, options): os.chdir('weights')\n"
+                                   "    def propose(self, system): open('file').close()\n")
+        for words in ([], ["-n", "2"]):
+            self.ran("run", self.job({"python": {"file": "code/mine.py"}}, **THREE_TASKS), *words)
+            os.remove("results/s.h5")
+
+    def test_it_may_use_the_processes_of_multiprocessing(self):
+        self.write("mine.py", """
+import multiprocessing, sys, time
+def plus_one(x): return x + 1
+class Guess:
+    def __init__(self, rods, options):
+        version = "import sys; print(sys.version)"
+        assert __import__("subprocess").check_output([sys.executable, "-c", version], text=True).strip() == sys.version
+        with multiprocessing.Pool(2) as pool: assert pool.map(plus_one, [1, 2]) == [2, 3]
+        sleeps = multiprocessing.Process(target=time.sleep, args=(1000,))
+        sleeps.start()
+        sleeps.terminate()
+        sleeps.join()
+        assert sleeps.exitcode == -15
+    def propose(self, system): return None
+""")
+        other = os.path.abspath("bin")    # another python3 on the PATH
+        os.makedirs(other)
+        os.symlink("/bin/false", os.path.join(other, "python3"))
+        self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5",
+                 env={**os.environ, "PATH": f"{other}:{os.environ['PATH']}"})
+
+
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + ["-v"])
+    unittest.main()
