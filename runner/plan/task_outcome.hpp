@@ -13,7 +13,7 @@ enum class TaskOutcome : std::int8_t {
   ok = 1,               ///< all steps completed
   diverged = 2,         ///< the simulation blew up (joints open by a hundred lengths) or a solve diverged
   not_a_number = 3,     ///< the state holds a NaN or infinity
-  indefinite = 4,       ///< the system matrix is not positive definite
+  indefinite = 4,       ///< the system matrix or the preconditioner is not positive definite
   iteration_limit = 5,  ///< the solve that advances the trajectory reached its iteration limit
   timed_out = 6,        ///< the task exceeded its time limit
   error = 7,            ///< an exception; its text is the task's message

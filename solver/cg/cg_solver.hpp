@@ -2,7 +2,11 @@
 // joints' multipliers (conjugate_gradient.hpp) or the motions of crossings (condensed_cg.hpp).
 //
 // Convergence: the norm of A's residual relative to that of b (`reference`), also with a guess. One solver per guess
-// and rod.
+// and rod. CG updates its residual in each iteration. The update's error is rounding of the largest residual, so the
+// true residual replaces it, and CG starts again from there, before it is 1e-12 of the first one: this happens if a guess
+// starts far above b (residual replacement: van der Vorst & Ye 2000, SIAM J. Sci. Comput. 22). If rounding keeps the true
+// residual above the tolerance, the outcome is `iteration_limit`. A preconditioner of the user's is examined where
+// convergence could be an effect of its not being positive definite.
 #pragma once
 
 #include <cstdint>
@@ -48,22 +52,52 @@ struct CgReport {
 
 class CgSolver {
  public:
+  CgSolver(int max_iterations, int unknowns) : max_iterations_(max_iterations), residual_(VectorX::Zero(unknowns)) {}
   virtual ~CgSolver() = default;
+  CgSolver(CgSolver&&) = default;
+  CgSolver& operator=(CgSolver&&) = default;
 
   /// The next solve that iterates rebuilds the preconditioner, within its time. Without this call the old one is kept.
   virtual void matrix_changed() = 0;
 
   /// Iterates until the norm is at most tolerance * reference. Sets x to the solution.
   /// With `deflation` every preconditioned residual is projected; the first residual must be orthogonal to its space.
-  virtual CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
-                         Deflation* deflation = nullptr) = 0;
+  CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
+                 Deflation* deflation = nullptr);
 
   /// The norm of b to pass as `reference`: ||b||_2, or the natural norm.
   virtual double norm_of(const VectorX& b) = 0;
 
   /// Norms of the last solve's residuals, [0] before the first iteration, if kept.
-  virtual void keep_history(bool on) = 0;
-  virtual const std::vector<double>& history() const = 0;
+  virtual void keep_history(bool on);
+  const std::vector<double>& history() const { return history_; }
+
+ protected:
+  /// The residual of x with its 2-norm.
+  struct Residual {
+    const VectorX& entries;
+    double norm;
+  };
+  /// Adds to x the correction for `first`, its residual, in at most `most` iterations. Appends norms to the history, if
+  /// kept: that of `first`, and one for each iteration.
+  virtual CgReport iterate(const Residual& first, VectorX& x, double tolerance, double reference, int most,
+                           Deflation* deflation) = 0;
+  /// Whether a residual of this 2-norm needs no iteration.
+  virtual bool meets(double norm, double tolerance, double reference) const { return norm <= tolerance * reference; }
+  /// Whether norms of iterate() may have large errors, so that convergence is checked on b - A x.
+  virtual bool drifts() const { return false; }
+  /// y = A x
+  virtual void multiply(const VectorX& x, VectorX& y) = 0;
+  /// Whether the residual of x, after a solve to `tolerance`, shows that a preconditioner of the user's is not positive
+  /// definite.
+  virtual bool shows_indefinite(const VectorX& /*b*/, const VectorX& /*x*/, double /*tolerance*/, SolveOutcome) {
+    return false;
+  }
+
+  int max_iterations_;
+  bool keeps_history_ = false;
+  std::vector<double> history_;
+  VectorX residual_;  ///< b - A x
 };
 
 /// `rod` and `system` must outlive it.

@@ -21,15 +21,13 @@ struct CondensedCg::Impl {
   Condensation condensation;
   std::unique_ptr<BlockPreconditioner> preconditioner;
   BlockOperator op;
-  int max_iterations;
   bool stale = true, positive = true;
-  VectorX g, d, residual;
+  VectorX g, d;
   Mat product = nullptr;
   KSP ksp = nullptr;
   Vec rhs = nullptr, y = nullptr;
   double goal = 0, norm = 0;
-  bool keeps_history = false;
-  std::vector<double> history;
+  std::vector<double>* history = nullptr;  ///< null: not kept
 
   Impl(const Rod& r, const LinearSystem& of, const CgSettings& settings)
       : rod(r),
@@ -37,10 +35,8 @@ struct CondensedCg::Impl {
         condensation(r),
         preconditioner(block_preconditioner(Preconditioner::block_icc, condensation.matrix(), settings.fill_levels)),
         op{condensation.matrix()},
-        max_iterations(iteration_limit(settings, of.matrix().unknowns())),
         g(VectorX::Zero(op.a.unknowns())),
-        d(VectorX::Zero(of.matrix().unknowns())),
-        residual(d) {
+        d(VectorX::Zero(of.matrix().unknowns())) {
     if (op.a.block_rows() == 0) return;
     product = create_operator(op);
     rhs = create_vector(op.a.unknowns());
@@ -54,7 +50,6 @@ struct CondensedCg::Impl {
     petsc_check(PCShellSetContext(pc, this), "PCShellSetContext");
     petsc_check(PCShellSetApply(pc, apply), "PCShellSetApply");
     petsc_check(KSPSetOperators(ksp, product, product), "KSPSetOperators");
-    petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, max_iterations - 1), "KSPSetTolerances");
     petsc_check(KSPSetConvergenceTest(ksp, test, this, nullptr), "KSPSetConvergenceTest");
   }
   ~Impl() {
@@ -75,7 +70,7 @@ struct CondensedCg::Impl {
   }
   static PetscErrorCode test(KSP, PetscInt, PetscReal natural, KSPConvergedReason* reason, void* context) noexcept {
     Impl& self = *static_cast<Impl*>(context);
-    if (self.keeps_history) self.history.push_back(self.norm);
+    if (self.history) self.history->push_back(self.norm);
     *reason = KSP_CONVERGED_ITERATING;
     if (!std::isfinite(natural) || !std::isfinite(self.norm))
       *reason = KSP_DIVERGED_NANORINF;
@@ -95,61 +90,40 @@ struct CondensedCg::Impl {
 };
 
 CondensedCg::CondensedCg(const Rod& rod, const LinearSystem& system, const CgSettings& settings)
-    : impl_(std::make_unique<Impl>(rod, system, settings)) {}
+    : CgSolver(iteration_limit(settings, system.matrix().unknowns()), system.matrix().unknowns()),
+      impl_(std::make_unique<Impl>(rod, system, settings)) {}
 CondensedCg::~CondensedCg() = default;
 
 void CondensedCg::matrix_changed() { impl_->stale = true; }
 
-CgReport CondensedCg::solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
-                            Deflation* deflation) {
+void CondensedCg::multiply(const VectorX& x, VectorX& y) { impl_->system.multiply(x.data(), y.data()); }
+
+CgReport CondensedCg::iterate(const Residual& first, VectorX& x, double tolerance, double reference, int most,
+                              Deflation* deflation) {
   if (deflation) throw std::logic_error("CondensedCg: deflation is not supported");
   Impl& s = *impl_;
-  s.history.clear();
-  CgReport report{SolveOutcome::converged, 0, 0};
-  const bool known = start.nonzero && start.residual;
-  if (start.nonzero && !known) {
-    s.system.multiply(x.data(), s.residual.data());
-    s.residual = b - s.residual;
-    report.products = 1;
-  } else {
-    s.residual = known ? *start.residual : b;
-  }
   s.goal = tolerance * reference;
-  const double first = s.residual.norm();
-  if (s.keeps_history) s.history.push_back(first);
-  if (!start.nonzero) x.setZero(b.size());
-  if (!std::isfinite(first)) return {SolveOutcome::not_a_number, 0, report.products};
-  if (first <= s.goal) return report;
-
-  if (!s.refresh()) return {SolveOutcome::indefinite, 0, report.products};
-  s.condensation.condense(s.residual, s.g);
-  report.iterations = 1;
+  s.history = keeps_history_ ? &history_ : nullptr;
+  if (s.history) s.history->push_back(first.norm);
+  if (!s.refresh()) return {SolveOutcome::indefinite, 0, 0};
+  s.condensation.condense(first.entries, s.g);
   if (!s.ksp) {
-    s.condensation.expand(s.residual, nullptr, s.d);
-    if (s.keeps_history) s.history.push_back(0);
+    s.condensation.expand(first.entries, nullptr, s.d);
+    if (s.history) s.history->push_back(0);
     x += s.d;
-    return report;
+    return {SolveOutcome::converged, 1, 0};
   }
   copy(s.g, s.rhs);
+  petsc_check(KSPSetTolerances(s.ksp, 0, 0, PETSC_DEFAULT, most - 1), "KSPSetTolerances");
   petsc_check(KSPSolve(s.ksp, s.rhs, s.y), "KSPSolve");
   check_interrupted(0);
-  s.condensation.expand(s.residual, vector_data(s.y), s.d);
+  s.condensation.expand(first.entries, vector_data(s.y), s.d);
   x += s.d;
   PetscInt iterations = 0;
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   petsc_check(KSPGetIterationNumber(s.ksp, &iterations), "KSPGetIterationNumber");
   petsc_check(KSPGetConvergedReason(s.ksp, &reason), "KSPGetConvergedReason");
-  report.iterations += static_cast<int>(iterations);
-  report.outcome = outcome_of(reason);
-  return report;
+  return {outcome_of(reason), 1 + static_cast<int>(iterations), 0};
 }
-
-void CondensedCg::keep_history(bool on) {
-  impl_->keeps_history = on;
-  impl_->history.clear();
-  impl_->history.reserve(on ? static_cast<std::size_t>(impl_->max_iterations) + 2 : 0);
-}
-
-const std::vector<double>& CondensedCg::history() const { return impl_->history; }
 
 }  // namespace rodsweep

@@ -3,8 +3,9 @@
 //
 // It solves A d = r for the correction of multipliers with residual r. The convergence test uses the norm of A's
 // residual, so the accuracy is that of ConjugateGradient. The first iteration is the elimination of struts: residuals
-// are known before it (entry 0 of the history), and after every further one. PETSc must be initialised. Throws
-// PetscError if a call fails.
+// are known before it (entry 0 of the history), and after every further one. The elimination of stiff struts loses
+// digits. So the solve continues from the true residual if that does not meet the tolerance. PETSc must be initialised.
+// Throws PetscError if a call fails.
 #pragma once
 
 #include <memory>
@@ -21,14 +22,15 @@ class CondensedCg : public CgSolver {
   ~CondensedCg() override;
 
   void matrix_changed() override;
-  /// Products with A: one for the residual of a nonzero guess, if not known. `deflation` must be null.
-  CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
-                 Deflation* deflation = nullptr) override;
   double norm_of(const VectorX& b) override { return b.norm(); }
-  void keep_history(bool on) override;
-  const std::vector<double>& history() const override;
 
  private:
+  /// `deflation` must be null.
+  CgReport iterate(const Residual& first, VectorX& x, double tolerance, double reference, int most,
+                   Deflation* deflation) override;
+  bool drifts() const override { return true; }
+  void multiply(const VectorX& x, VectorX& y) override;
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

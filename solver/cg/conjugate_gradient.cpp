@@ -113,11 +113,10 @@ struct ConjugateGradient::Impl {
   PC plain = nullptr, shell = nullptr;  ///< the preconditioner; with projections, once used
   Projected projected;
   Vec b = nullptr, x = nullptr, scratch = nullptr;
-  VectorX residual;
   Target target;
+  int most = 0;       ///< PETSc's limit of iterations
   bool stale = true;  ///< the preconditioner belongs to older entries
   std::vector<PetscReal> history_buffer;
-  std::vector<double> history;
 
   Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s);
   ~Impl() { destroy(); }
@@ -131,13 +130,15 @@ struct ConjugateGradient::Impl {
   void refresh();
   void use(Deflation* deflation);
   void check_applications();
-  const VectorX& first_residual(const VectorX& rhs, const VectorX& guess, const CgStart& start);
-  CgReport without_iterations(SolveOutcome outcome, double norm);
+  void limit_iterations(int most_iterations);
+  double precondition(const VectorX& r);
+  bool is_of_the_user() const {
+    return settings.preconditioner == Preconditioner::plugin || settings.preconditioner == Preconditioner::python;
+  }
 };
 
 ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s)
     : a(matrix), op{matrix, without_blocks}, settings(s) {
-  settings.max_iterations = iteration_limit(settings, a.unknowns());
   try {
     create();
   } catch (...) {  // if out of memory, later tasks need this memory
@@ -152,7 +153,6 @@ void ConjugateGradient::Impl::create() {
   b = create_vector(n);
   x = create_vector(n);
   scratch = create_vector(n);
-  residual.setZero(n);
 
   if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
   if (settings.preconditioner == Preconditioner::icc) create_entries(true);
@@ -171,7 +171,6 @@ void ConjugateGradient::Impl::create() {
     petsc_check(PCShellSetApply(plain, apply_shell), "PCShellSetApply");
   }
   petsc_check(KSPSetOperators(ksp, product, entries ? entries : product), "KSPSetOperators");
-  petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, settings.max_iterations), "KSPSetTolerances");
   petsc_check(KSPSetConvergenceTest(ksp, test_convergence, &target, nullptr), "KSPSetConvergenceTest");
 }
 
@@ -211,7 +210,7 @@ void ConjugateGradient::Impl::create_entries(bool symmetric) {
 void ConjugateGradient::Impl::refresh() {
   if (!stale) return;
   stale = false;
-  if (own.preconditioner) own.positive = own.preconditioner->set_up(a);
+  own.positive = !own.preconditioner || own.preconditioner->set_up(a);
   if (entries) copy_entries();
   // Tells PETSc that the entries are new; without it the old preconditioner is kept silently.
   Mat changed = entries ? entries : product;
@@ -239,21 +238,21 @@ void ConjugateGradient::Impl::check_applications() {
   if (own.failure) std::rethrow_exception(std::exchange(own.failure, nullptr));
 }
 
-/// b - A x, with a product if it is not known.
-const VectorX& ConjugateGradient::Impl::first_residual(const VectorX& rhs, const VectorX& guess, const CgStart& start) {
-  if (!start.nonzero) return rhs;
-  if (start.residual) return *start.residual;
-  copy(guess, x);
-  op.multiply(vector_data(x), vector_data(scratch));
-  ++op.products;
-  residual = rhs - Eigen::Map<const VectorX>(vector_data(scratch), rhs.size());
-  return residual;
+void ConjugateGradient::Impl::limit_iterations(int most_iterations) {
+  if (std::exchange(most, most_iterations) == most_iterations) return;
+  petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, most), "KSPSetTolerances");
 }
 
-CgReport ConjugateGradient::Impl::without_iterations(SolveOutcome outcome, double norm) {
-  history.clear();
-  if (!history_buffer.empty() && std::isfinite(norm)) history.push_back(norm);
-  return {outcome, 0, op.products};
+/// Sets `scratch` to z = P^-1 r and returns r.z.
+double ConjugateGradient::Impl::precondition(const VectorX& r) {
+  copy(r, b);
+  use(nullptr);
+  petsc_check(KSPSetUp(ksp), "KSPSetUp");
+  petsc_check(PCApply(plain, b, scratch), "PCApply");
+  check_applications();
+  PetscScalar product_with_z = 0;
+  petsc_check(VecDot(b, scratch, &product_with_z), "VecDot");
+  return product_with_z;
 }
 
 void ConjugateGradient::Impl::copy_entries() {
@@ -273,31 +272,37 @@ void ConjugateGradient::Impl::copy_entries() {
 }
 
 ConjugateGradient::ConjugateGradient(const BlockMatrix& a, const CgSettings& settings)
-    : impl_(std::make_unique<Impl>(a, nullptr, settings)) {}
+    : CgSolver(iteration_limit(settings, a.unknowns()), a.unknowns()),
+      impl_(std::make_unique<Impl>(a, nullptr, settings)) {}
 ConjugateGradient::ConjugateGradient(const LinearSystem& system, const CgSettings& settings)
-    : impl_(std::make_unique<Impl>(system.matrix(), system.product(), settings)) {}
+    : CgSolver(iteration_limit(settings, system.matrix().unknowns()), system.matrix().unknowns()),
+      impl_(std::make_unique<Impl>(system.matrix(), system.product(), settings)) {}
 ConjugateGradient::~ConjugateGradient() = default;
 ConjugateGradient::ConjugateGradient(ConjugateGradient&&) noexcept = default;
 ConjugateGradient& ConjugateGradient::operator=(ConjugateGradient&&) noexcept = default;
 
 void ConjugateGradient::matrix_changed() { impl_->stale = true; }
 
-CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance,
-                                  double reference, Deflation* deflation) {
+void ConjugateGradient::multiply(const VectorX& x, VectorX& y) { impl_->op.multiply(x.data(), y.data()); }
+
+/// The natural norm is known after an application of the preconditioner only.
+bool ConjugateGradient::meets(double norm, double tolerance, double reference) const {
+  return impl_->settings.norm == Norm::true_residual && CgSolver::meets(norm, tolerance, reference);
+}
+
+CgReport ConjugateGradient::iterate(const Residual& first, VectorX& x, double tolerance, double reference, int most,
+                                    Deflation* deflation) {
   Impl& s = *impl_;
-  s.op.products = 0;
-  const VectorX& first = s.first_residual(b, x, start);
-  const double norm = first.norm();
-  if (!start.nonzero) x.setZero(b.size());
-  if (!std::isfinite(norm)) return s.without_iterations(SolveOutcome::not_a_number, norm);
-  // A guess within the tolerance needs no preconditioner.
-  if (s.settings.norm == Norm::true_residual && norm <= tolerance * reference)
-    return s.without_iterations(SolveOutcome::converged, norm);
   s.refresh();
-  if (!s.own.positive) return s.without_iterations(SolveOutcome::indefinite, norm);
+  if (!s.own.positive) {
+    if (keeps_history_) history_.push_back(first.norm);
+    return {SolveOutcome::indefinite, 0, 0};
+  }
   s.use(deflation);
+  s.limit_iterations(most);
   s.target = {tolerance, reference, work_of_iteration(s.a)};
-  copy(first, s.b);
+  s.op.products = 0;
+  copy(first.entries, s.b);
   petsc_check(KSPSolve(s.ksp, s.b, s.x), "KSPSolve");
   s.check_applications();
   check_interrupted(0);
@@ -307,13 +312,33 @@ CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, const CgStart& s
   PetscInt iterations = 0;
   petsc_check(KSPGetConvergedReason(s.ksp, &reason), "KSPGetConvergedReason");
   petsc_check(KSPGetIterationNumber(s.ksp, &iterations), "KSPGetIterationNumber");
-  if (!s.history_buffer.empty()) {
+  if (keeps_history_) {
     const PetscReal* norms = nullptr;
     PetscInt count = 0;
     petsc_check(KSPGetResidualHistory(s.ksp, &norms, &count), "KSPGetResidualHistory");
-    s.history.assign(norms, norms + count);
+    history_.insert(history_.end(), norms, norms + count);
   }
   return {outcome_of(reason), static_cast<int>(iterations), s.op.products};
+}
+
+/// A preconditioner P that is zero on a part of r leaves that part, and its natural norm does not see it. In the 2-norm
+/// only the limit of iterations ends such a solve. Otherwise ||r|| / ||b|| is at most (condition of P)^1/2 times the
+/// ratio in the natural norm.
+bool ConjugateGradient::shows_indefinite(const VectorX& b, const VectorX& x, double tolerance, SolveOutcome outcome) {
+  Impl& s = *impl_;
+  if (!s.is_of_the_user()) return false;
+  const bool converged = outcome == SolveOutcome::converged && s.settings.norm == Norm::natural;
+  if (!converged && outcome != SolveOutcome::iteration_limit) return false;
+  constexpr double most_condition = 1e12, rounding = 1e-8;
+  multiply(x, residual_);
+  residual_ = b - residual_;
+  if (converged && residual_.norm() > std::sqrt(most_condition) * tolerance * b.norm()) return true;
+  s.precondition(residual_);
+  const double smallest = rounding * residual_.lpNorm<Eigen::Infinity>();
+  const double* z = vector_data(s.scratch);
+  for (Eigen::Index i = 0; i < residual_.size(); ++i)
+    if (std::abs(residual_[i]) > smallest && z[i] == 0) return true;
+  return false;
 }
 
 double ConjugateGradient::norm_of(const VectorX& b) {
@@ -321,26 +346,18 @@ double ConjugateGradient::norm_of(const VectorX& b) {
   if (s.settings.norm == Norm::true_residual) return b.norm();
   s.refresh();
   if (!s.own.positive) return std::numeric_limits<double>::quiet_NaN();
-  copy(b, s.b);
-  PetscScalar square = 0;
-  s.use(nullptr);
-  petsc_check(KSPSetUp(s.ksp), "KSPSetUp");
-  petsc_check(PCApply(s.plain, s.b, s.scratch), "PCApply");
-  s.check_applications();
-  petsc_check(VecDot(s.b, s.scratch, &square), "VecDot");
-  return std::sqrt(square);
+  const double square = s.precondition(b);
+  if (s.is_of_the_user()) s.own.positive = square > 0 || b.isZero(0);
+  return s.own.positive ? std::sqrt(square) : std::numeric_limits<double>::quiet_NaN();
 }
 
 void ConjugateGradient::keep_history(bool on) {
+  CgSolver::keep_history(on);
   Impl& s = *impl_;
-  s.history.clear();
-  s.history.reserve(on ? static_cast<std::size_t>(s.settings.max_iterations) + 1 : 0);
-  s.history_buffer.resize(on ? static_cast<std::size_t>(s.settings.max_iterations) + 1 : 0);
+  s.history_buffer.resize(on ? static_cast<std::size_t>(max_iterations_) + 1 : 0);
   petsc_check(KSPSetResidualHistory(s.ksp, on ? s.history_buffer.data() : nullptr,
                                     static_cast<PetscInt>(s.history_buffer.size()), PETSC_TRUE),
               "KSPSetResidualHistory");
 }
-
-const std::vector<double>& ConjugateGradient::history() const { return impl_->history; }
 
 }  // namespace rodsweep

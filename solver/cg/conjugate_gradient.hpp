@@ -4,12 +4,12 @@
 // copy of the blocks in its format if they need entries, or ours (block_preconditioner.hpp). If one of ours is not
 // positive definite, no iteration is made. None is set up if the guess already meets the tolerance (2-norm). The solve
 // diverges only above 1e30 times `reference`: a guess from history may start far above a small b. Products: one for
-// each iteration, one more for the residual of a nonzero guess, if not known. PETSc must be initialised (PetscSession).
+// each iteration, one more for the residual of a nonzero guess, if not known, and for each that replaces CG's. PETSc must
+// be initialised (PetscSession).
 // Throws PetscError if a call fails.
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "solver/cg/cg_solver.hpp"
 #include "solver/linear/block_matrix.hpp"
@@ -27,13 +27,16 @@ class ConjugateGradient : public CgSolver {
   ConjugateGradient& operator=(ConjugateGradient&&) noexcept;
 
   void matrix_changed() override;  ///< products always use the current entries
-  CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
-                 Deflation* deflation = nullptr) override;
   double norm_of(const VectorX& b) override;
   void keep_history(bool on) override;
-  const std::vector<double>& history() const override;
 
  private:
+  CgReport iterate(const Residual& first, VectorX& x, double tolerance, double reference, int most,
+                   Deflation* deflation) override;
+  bool meets(double norm, double tolerance, double reference) const override;
+  void multiply(const VectorX& x, VectorX& y) override;
+  bool shows_indefinite(const VectorX& b, const VectorX& x, double tolerance, SolveOutcome outcome) override;
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

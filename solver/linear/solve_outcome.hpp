@@ -10,7 +10,7 @@ enum class SolveOutcome : std::int8_t {
   not_run = 0,          ///< the row was never solved (Newton had converged, or the task ended early)
   converged = 1,        ///< the tolerance was met
   zero_rhs = 2,         ///< b is zero to rounding: nothing to solve, zero iterations
-  iteration_limit = 3,  ///< the limit of iterations was reached first
+  iteration_limit = 3,  ///< the limit of iterations, or that of rounding, was reached first
   diverged = 4,         ///< the residual exceeded the divergence limit
   indefinite = 5,       ///< the matrix or the preconditioner is not positive definite
   not_a_number = 6,     ///< a NaN or infinity appeared

@@ -1,5 +1,7 @@
 #include "solver/plugin/plugin_preconditioner.hpp"
 
+#include <algorithm>
+
 namespace rodsweep {
 
 PluginPreconditioner::PluginPreconditioner(const PluginSource& source, const Rod& rod, int index,
@@ -14,8 +16,9 @@ bool PluginPreconditioner::set_up(const BlockMatrix&) {
 }
 
 void PluginPreconditioner::apply(const double* r, double* z) {
-  instance_.call(instance_.functions().apply, r, z);
   const Eigen::Index size = 6 * rod_.joint_count();
+  std::fill_n(z, size, 0.0);  // a library that writes only a part gives the same each time
+  instance_.call(instance_.functions().apply, r, z);
   if (!VectorX::Map(z, size).allFinite() && VectorX::Map(r, size).allFinite())
     throw instance_.error("apply() gave a vector that is not finite");
 }

@@ -171,4 +171,42 @@ TEST_CASE("the test stays relative to b with a guess, even one whose residual st
   }
 }
 
+TEST_CASE("residuals are true to the last tolerance, however far above b the guess starts") {
+  const Case c = moving_chain();
+  const VectorX direction = Random(1).entries(c.a().unknowns());
+  const auto residual = [&](const VectorX& x) { return (c.b() - c.a().dense() * x).norm() / c.b().norm(); };
+  const double size = residual(1e6 * direction) / 1e6;
+  for (const double first : {1e3, 1e6, 1e8, 1e12})
+    for (const Preconditioner p : preconditioners)
+      for (const Norm norm : norms) {
+        CAPTURE(first, name(p));
+        ConjugateGradient cg(c.a(), {p, norm, 0});
+        const VectorX poor = first / size * direction;
+        const Run tight = run(cg, c.b(), 1e-8, &poor);
+        CHECK(tight.report.outcome == SolveOutcome::converged);
+        CHECK(tight.history.size() == static_cast<std::size_t>(tight.report.iterations) + 1);
+        if (norm == Norm::natural) continue;
+        CHECK(residual(tight.x) <= 1.1e-8);
+        CHECK(tight.history.back() <= 1e-8 * c.b().norm());
+        // Each count of the history is that of a solve of its own.
+        std::int16_t counted = 0;
+        iterations_to(tight.history, c.b().norm(), {1e-6}, &counted);
+        const Run own = run(cg, c.b(), 1e-6, &poor);
+        CHECK(residual(own.x) <= 1.1e-6);
+        CHECK(std::abs(own.report.iterations - counted) <= 1 + counted / 10);
+      }
+}
+
+TEST_CASE("a solve from a guess far above b stays within the limit of iterations") {
+  const Case c = moving_chain();
+  const VectorX poor = 1e10 * c.exact.norm() * Random(1).entries(c.a().unknowns());
+  for (const int most : {1, 30, 60}) {
+    ConjugateGradient cg(c.a(), {Preconditioner::jacobi, Norm::true_residual, most});
+    const Run ended = run(cg, c.b(), 1e-8, &poor);
+    CHECK(ended.report.outcome == SolveOutcome::iteration_limit);
+    CHECK(ended.report.iterations == most);
+    CHECK(ended.history.size() == static_cast<std::size_t>(most) + 1);
+  }
+}
+
 }  // namespace rodsweep::test_conjugate_gradient
