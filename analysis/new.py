@@ -36,7 +36,7 @@ class Guess:
         return np.mean(known, axis=0) if known else None
 
     def accept(self, system, x):
-        """`x` is the solution of the system last proposed for."""
+        """`x` is the solution of this system, which was last proposed for."""
         known = self.solutions.setdefault((system.rod, system.newton), [])
         known.append(x)
         del known[:-self.count]

@@ -19,7 +19,10 @@ class CopingNetGuess : public InitialGuess {
 
   void prepare(const SolvePosition& at) override { base_->prepare(at); }
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
-  void accept(const SolvePosition& at, const VectorX& solution) override { base_->accept(at, solution); }
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override {
+    base_->accept(system, at, solution);
+  }
+  void accept_total(int rod, int step, const VectorX& total) override { base_->accept_total(rod, step, total); }
 
  private:
   std::shared_ptr<const Model> model_;

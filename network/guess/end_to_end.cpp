@@ -20,7 +20,7 @@ bool CopingNetIncrements::predict(const Rod& rod, const LinearSystem& system, co
   Proposal proposal = base_->propose(system, at, delta_lambda);
   if (!correction->correct(rod, system, at, proposal, delta_lambda, own_moves ? &moves : nullptr)) return false;
   if (!own_moves) system.displacements(rod, delta_lambda, moves);
-  base_->accept(at, delta_lambda);
+  base_->accept(system, at, delta_lambda);
   return delta_lambda.allFinite();
 }
 

@@ -21,7 +21,7 @@ class KnnGuess : public InitialGuess {
 
   /// Proposes zero for Newton iterations without systems in the training set. Allocates nothing.
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
-  void accept(const SolvePosition&, const VectorX&) override {}
+  void accept(const LinearSystem&, const SolvePosition&, const VectorX&) override {}
 
  private:
   struct RodBuffers {

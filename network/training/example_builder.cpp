@@ -110,7 +110,7 @@ void add_examples(const CopingNetSettings& settings, const StoredSimulation& sim
         out.push_back(example_of(settings, rod, system, stored, of, turned(rod, turn), turn));
       }
     }
-    base->accept(stored.at, stored.solution);
+    base->accept(system, stored.at, stored.solution);
   });
 }
 

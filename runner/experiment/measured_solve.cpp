@@ -16,6 +16,7 @@
 #include "runner/plan/plan.hpp"
 #include "solver/cg/cg_solver.hpp"
 #include "solver/linear/rounding_level.hpp"
+#include "solver/numbers/narrow.hpp"
 #include "solver/plugin/plugin_preconditioner.hpp"
 #include "solver/step/stopwatch.hpp"
 
@@ -23,6 +24,10 @@ namespace rodsweep {
 namespace {
 
 bool is_zero(const GuessSpec& guess) { return std::holds_alternative<guess::Zero>(guess.kind); }
+
+bool is_of_the_user(const GuessSpec& guess) {
+  return find_guess<guess::Plugin>(guess) || find_guess<guess::Python>(guess);
+}
 
 /// A condensed system has only one norm.
 bool has_other_norm(const TaskSpec& spec) {
@@ -34,6 +39,7 @@ bool has_other_norm(const TaskSpec& spec) {
 struct MeasuredSolve::Guess {
   std::size_t column;  ///< index on the file's guess axis
   bool is_zero;
+  bool is_of_the_user;  ///< its proposals are compared
   TimedGuess guess;
 };
 
@@ -41,8 +47,8 @@ struct MeasuredSolve::Guess {
 struct MeasuredSolve::RodSolvers {
   struct PerGuess {
     std::unique_ptr<CgSolver> timed;
-    VectorX x0;
-    Proposal proposal;
+    VectorX x0, first_x0;      ///< the latest proposal; the first one for this system, if compared
+    Proposal proposal;         ///< of x0
     std::vector<double> cg_s;  ///< [repeat]
     CgReport advanced;
   };
@@ -72,7 +78,7 @@ struct MeasuredSolve::RodSolvers {
     }
     for (std::size_t g = 0; g < guess_count; ++g)
       guesses.push_back(
-          {make_cg(rod, system, settings(rod, index, system, spec, spec.solve.norm)), exact, {}, direct_s, {}});
+          {make_cg(rod, system, settings(rod, index, system, spec, spec.solve.norm)), exact, {}, {}, direct_s, {}});
   }
 
   static CgSettings settings(const Rod& rod, int index, const LinearSystem& system, const TaskSpec& spec, Norm norm) {
@@ -109,7 +115,8 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
   const bool one = spec.own_guess >= 0;
   for (std::size_t g = 0; g < spec.guesses.size(); ++g)
     if (one ? static_cast<int>(g) == spec.own_guess : spec.settled.empty() || spec.settled[g] == 0)
-      guesses_.push_back({g, is_zero(spec.guesses[g]), TimedGuess(make_guess(spec.guesses[g], spec, scene))});
+      guesses_.push_back({g, is_zero(spec.guesses[g]), is_of_the_user(spec.guesses[g]),
+                          TimedGuess(make_guess(spec.guesses[g], spec, scene))});
   if (!spec.output.counts) return;
   const std::size_t tolerances = tolerance_ladder().size();
   for (const Guess& guess : guesses_) {
@@ -167,7 +174,7 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
       delta_lambda = solvers.x;
       outcome = solvers.guesses.front().advanced.outcome;
     }
-    accept(at, row, solvers, delta_lambda);
+    accept(system, at, row, solvers, delta_lambda);
     if (spec_.own_guess >= 0) add_effort(assemble_s, solvers);
   }
   elapsed_s_ += whole.seconds();
@@ -206,10 +213,11 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     RodSolvers::PerGuess& own = solvers.guesses[g];
     guesses_[g].guess.prepare(at);
     own.proposal = guesses_[g].guess.propose(system, at, own.x0);
+    if (guesses_[g].is_of_the_user) own.first_x0 = own.x0;
     const int start = own.proposal.start_products();
     const std::size_t column = guesses_[g].column;
     if (spec_.output.solves) {
-      record_.solves.start_matvecs(row, column) = static_cast<std::int16_t>(start);
+      record_.solves.start_matvecs(row, column) = narrow<std::int16_t>(start);
       record_.solves.renewed(row, column) =
           own.proposal.renewed || (spec_.solve.kept_steps() > 0 && solvers.renewed) ? 1 : 0;
     }
@@ -264,7 +272,11 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
     for (std::size_t k = 0; k < guesses_.size(); ++k) {
       const std::size_t g = (k + row + repeat) % guesses_.size();
       RodSolvers::PerGuess& own = solvers.guesses[g];
-      guesses_[g].guess.propose_timed(system, at, own.x0);
+      const Proposal again = guesses_[g].guess.propose_timed(system, at, own.x0);
+      if (guesses_[g].is_of_the_user && unsteady_.empty() &&
+          (own.x0 != own.first_x0 || again.start_products() != own.proposal.start_products()))
+        unsteady_ = spec_.guesses[guesses_[g].column].label;
+      own.proposal = again;
       solvers.x = own.x0;
       if (repeat > 0 && solvers.renewed) own.timed->matrix_changed();
       const Stopwatch watch;
@@ -276,9 +288,10 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
 }
 
 /// Passes the solution that advances the rod to the guesses; their time for this is counted.
-void MeasuredSolve::accept(const SolvePosition& at, std::size_t row, RodSolvers& solvers, const VectorX& solution) {
+void MeasuredSolve::accept(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers,
+                           const VectorX& solution) {
   for (std::size_t g = 0; g < guesses_.size(); ++g) {
-    guesses_[g].guess.accept(at, solution);
+    guesses_[g].guess.accept(system, at, solution);
     if (!spec_.output.solves) continue;
     record_.timing.guess_s(row, guesses_[g].column) = static_cast<float>(guesses_[g].guess.seconds());
     record_.timing.cg_s(row, guesses_[g].column) = static_cast<float>(median(solvers.guesses[g].cg_s));
@@ -310,6 +323,10 @@ double MeasuredSolve::take_elapsed_s() { return std::exchange(elapsed_s_, 0); }
 void MeasuredSolve::finish() {
   set_cg_ratios(spec_, record_);
   if (!unusable_.empty()) record_.message += ": it cannot start from the guess \"" + unusable_ + "\"";
+  if (unsteady_.empty()) return;
+  if (!record_.message.empty()) record_.message += "; ";
+  record_.message += "the guess \"" + unsteady_ +
+                     "\" gave two different answers for the same system: its counts and times are not of one guess";
 }
 
 void set_cg_ratios(const TaskSpec& spec, TaskRecord& record) {

@@ -7,7 +7,8 @@
 // - `timing_repeats` timed solves to the job's tolerance (or forcing terms), without history, with guesses in rotated
 //   order, including the preconditioner's setup. The median is recorded.
 // A lagged preconditioner is set up at the first Newton iteration of every `lag_steps`-th step, at no cost in between.
-// Guesses receive the solution that advanced the trajectory. If max |b| <= 1e-13 (rounding level), all guesses need
+// Guesses receive the solution that advanced the trajectory. A guess of the user's that gives another x0 when asked again
+// for a system is named in the task's message. If max |b| <= 1e-13 (rounding level), all guesses need
 // zero iterations. A guess with a first residual that is not a number ends the task.
 #pragma once
 
@@ -59,7 +60,8 @@ class MeasuredSolve : public LinearSolve {
   SolveOutcome solve_reference(const LinearSystem& system, RodSolvers& solvers) const;
   SolveOutcome count(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
   void time(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
-  void accept(const SolvePosition& at, std::size_t row, RodSolvers& solvers, const VectorX& solution);
+  void accept(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers,
+              const VectorX& solution);
   void add_effort(double assemble_s, RodSolvers& solvers);
   void add(CountSums& sums, std::size_t column, const std::vector<std::int16_t>& iterations, int used,
            int start_matvecs) const;
@@ -74,6 +76,7 @@ class MeasuredSolve : public LinearSolve {
   double elapsed_s_ = 0;
   SolveEffort effort_;
   std::string unusable_;  // label of a guess with an invalid first residual
+  std::string unsteady_;  // label of the first guess with two answers for one system
 };
 
 }  // namespace rodsweep

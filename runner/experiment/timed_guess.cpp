@@ -15,15 +15,16 @@ Proposal TimedGuess::propose(const LinearSystem& system, const SolvePosition& at
   return guess_->propose(system, at, x0);
 }
 
-void TimedGuess::propose_timed(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
+Proposal TimedGuess::propose_timed(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
   const Stopwatch watch(now_);
-  guess_->propose(system, at, x0);
+  const Proposal proposal = guess_->propose(system, at, x0);
   proposals_s_.push_back(watch.seconds());
+  return proposal;
 }
 
-void TimedGuess::accept(const SolvePosition& at, const VectorX& solution) {
+void TimedGuess::accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
   const Stopwatch watch(now_);
-  guess_->accept(at, solution);
+  guess_->accept(system, at, solution);
   once_s_ += watch.seconds();
 }
 

@@ -20,8 +20,8 @@ class TimedGuess {
   void prepare(const SolvePosition& at);
   /// Not timed, because the first proposal for a system has cold caches.
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0);
-  void propose_timed(const LinearSystem& system, const SolvePosition& at, VectorX& x0);
-  void accept(const SolvePosition& at, const VectorX& solution);
+  Proposal propose_timed(const LinearSystem& system, const SolvePosition& at, VectorX& x0);
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution);
   Deflation* deflation() { return guess_->deflation(); }
 
   /// Requires at least one timed proposal.

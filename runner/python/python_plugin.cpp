@@ -18,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -252,6 +253,22 @@ void read(const py::object& returned, double* to, int size, const std::string& f
   std::copy_n(values.data(), size, to);
 }
 
+/// A number of products. One that does not fit is refused like any other that is too large.
+int count_of(const py::object& products) {
+  const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(products.ptr()));
+  if (!whole) {
+    PyErr_Clear();
+    throw std::invalid_argument("propose() returned (x0, " + py::repr(products).cast<std::string>() +
+                                "); the second must be the number of products with A, an int");
+  }
+  int overflow = 0;
+  const long count = PyLong_AsLongAndOverflow(whole.ptr(), &overflow);
+  const auto as_int = static_cast<int>(count);
+  if (overflow == 0 && as_int == count) return as_int;
+  return overflow < 0 || (overflow == 0 && count < 0) ? std::numeric_limits<int>::min()
+                                                      : std::numeric_limits<int>::max();
+}
+
 struct Instance {
   py::object own;
   std::string folder;  ///< see Visit
@@ -338,7 +355,7 @@ int propose(void* instance, const rodsweep_system* system, double* x0, int* prod
     py::object x = static_cast<Instance*>(instance)->call("propose", *system);
     if (x.is_none()) return 0;
     if (py::isinstance<py::tuple>(x) && py::len(x) == 2) {
-      *products = x[py::int_(1)].cast<int>();
+      *products = count_of(x[py::int_(1)]);
       x = x[py::int_(0)];
     }
     read(x, x0, 6 * system->joints, "propose()");
@@ -354,12 +371,23 @@ int accept(void* instance, const rodsweep_system* system, const double* solution
   });
 }
 
+int accept_total(void* instance, int rod, int step, const double* total, char* error) {
+  return guarded(-1, error, [&] {
+    auto* self = static_cast<Instance*>(instance);
+    if (!py::hasattr(self->own, "accept_total")) return 0;
+    const py::ssize_t unknowns = py::len(self->rods[static_cast<std::size_t>(rod)].attr("compliance_per_j")) * 6;
+    const Visit visit(self->folder);
+    self->own.attr("accept_total")(rod, step, copied(total, {unknowns}));
+    return 0;
+  });
+}
+
 int set_up(void* instance, const rodsweep_system* system, char* error) {
   return guarded(-1, error, [&] {
     auto* self = static_cast<Instance*>(instance);
     if (!py::hasattr(self->own, "set_up")) return 1;
     const py::object usable = self->call("set_up", *system);
-    return usable.is_none() || usable.cast<bool>() ? 1 : 0;
+    return usable.is_none() || py::bool_(usable) ? 1 : 0;
   });
 }
 
@@ -376,7 +404,7 @@ int apply(void* instance, const double* r, double* z, char* error) {
 
 const rodsweep_plugin_functions* rodsweep_plugin() {
   static const rodsweep_plugin_functions functions{
-      RODSWEEP_PLUGIN_VERSION, create, destroy, propose, accept, set_up, apply};
+      RODSWEEP_PLUGIN_VERSION, create, destroy, propose, accept, accept_total, set_up, apply};
   return &functions;
 }
 

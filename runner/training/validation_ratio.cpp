@@ -69,7 +69,7 @@ ValidationRatio::Iterations ValidationRatio::count(const StoredSimulation& simul
         sums.fill(std::numeric_limits<double>::infinity());  // the first residual is not a number
       for (std::size_t t = 0; t < tolerance_count; ++t) sums[t] += reached[t] >= 0 ? reached[t] : report.iterations;
     }
-    guess->accept(stored.at, stored.solution);
+    guess->accept(system, stored.at, stored.solution);
   });
   return sums;
 }

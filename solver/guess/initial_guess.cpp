@@ -47,12 +47,17 @@ Proposal ExtrapolationGuess::propose(const LinearSystem&, const SolvePosition& a
   return {known > 0, 0};
 }
 
-void ExtrapolationGuess::accept(const SolvePosition& at, const VectorX& solution) {
+void ExtrapolationGuess::accept(const LinearSystem&, const SolvePosition& at, const VectorX& solution) {
   History& h = history(at);
   h.consecutive = h.last_step == at.step - 1 ? std::min(h.consecutive + 1, terms_) : 1;
   h.last_step = at.step;
   h.newest = (h.newest + 1) % terms_;
   h.solutions[static_cast<std::size_t>(h.newest)] = solution;
+}
+
+void ExtrapolationGuess::accept_total(int rod, int step, const VectorX& total) {
+  History& h = history({step, 0, rod});
+  if (h.last_step == step) h.solutions[static_cast<std::size_t>(h.newest)] = total;
 }
 
 OracleGuess::OracleGuess(const Scene& scene, double error, Error kind, std::uint64_t seed)

@@ -1,8 +1,8 @@
 // Initial guesses for the CG solve of A dlambda = b, behind one interface.
 //
-// prepare() is called once before a solve, propose() writes x0, accept() receives the solution. Histories are kept per
-// (rod, Newton iteration): a history guess of Newton iteration j extrapolates the solutions of iteration j of the
-// last steps,
+// prepare() is called once before a solve, propose() writes x0, accept() receives the solution, which belongs to the
+// same system. Histories are kept per (rod, Newton iteration): a history guess of Newton iteration j extrapolates the
+// solutions of iteration j of the last steps,
 //   previous  x1,      linear  2 x1 - x2,      quadratic  3 x1 - 3 x2 + x3        (x1 the newest),
 // and uses fewer terms, or zero, if consecutive steps have no solution at that iteration.
 // A learned guess is one more implementation of this interface.
@@ -38,8 +38,11 @@ class InitialGuess {
   virtual void prepare(const SolvePosition&) {}
   /// Writes x0. Calling it again for the same system gives the same x0.
   virtual Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) = 0;
-  /// Receives the solution of the system last proposed for.
-  virtual void accept(const SolvePosition& at, const VectorX& solution) = 0;
+  /// Receives the solution of the system last proposed for, which is still assembled and has not yet moved the rod.
+  virtual void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) = 0;
+  /// Receives the sum of a rod's solutions in a step, before its next step: a better value than the accepted solution of
+  /// the step's first system, which no longer exists (totals_guess.hpp). Guesses that store solutions replace it.
+  virtual void accept_total(int /*rod*/, int /*step*/, const VectorX& /*total*/) {}
   /// The space that CG projects out of the residuals of the system last proposed for; null: none.
   virtual Deflation* deflation() { return nullptr; }
 };
@@ -51,7 +54,7 @@ class ZeroGuess : public InitialGuess {
     x0.setZero();
     return {};
   }
-  void accept(const SolvePosition&, const VectorX&) override {}
+  void accept(const LinearSystem&, const SolvePosition&, const VectorX&) override {}
 };
 
 /// Polynomial extrapolation in time through the last `terms` solutions: 1 previous, 2 linear, 3 quadratic.
@@ -59,7 +62,8 @@ class ExtrapolationGuess : public InitialGuess {
  public:
   ExtrapolationGuess(const Scene& scene, int newton_iterations, int terms);
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
-  void accept(const SolvePosition& at, const VectorX& solution) override;
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
+  void accept_total(int rod, int step, const VectorX& total) override;
 
  private:
   /// The last solutions of one (rod, Newton iteration), as a ring.
@@ -83,7 +87,7 @@ class OracleGuess : public InitialGuess {
   enum class Error { white, smooth };
   OracleGuess(const Scene& scene, double error, Error kind, std::uint64_t seed);
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
-  void accept(const SolvePosition&, const VectorX&) override {}
+  void accept(const LinearSystem&, const SolvePosition&, const VectorX&) override {}
 
  private:
   std::vector<BlockFactor> factors_;  ///< per rod
@@ -100,7 +104,10 @@ class GuardedGuess : public InitialGuess {
   GuardedGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, double threshold);
   void prepare(const SolvePosition& at) override { inner_->prepare(at); }
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
-  void accept(const SolvePosition& at, const VectorX& solution) override { inner_->accept(at, solution); }
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override {
+    inner_->accept(system, at, solution);
+  }
+  void accept_total(int rod, int step, const VectorX& total) override { inner_->accept_total(rod, step, total); }
   Deflation* deflation() override { return used_ ? inner_->deflation() : nullptr; }
 
  private:
@@ -118,9 +125,10 @@ class FirstGuess : public InitialGuess {
     if (at.newton == 0) inner_->prepare(at);
   }
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
-  void accept(const SolvePosition& at, const VectorX& solution) override {
-    if (at.newton == 0) inner_->accept(at, solution);
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override {
+    if (at.newton == 0) inner_->accept(system, at, solution);
   }
+  void accept_total(int rod, int step, const VectorX& total) override { inner_->accept_total(rod, step, total); }
   Deflation* deflation() override { return used_ ? inner_->deflation() : nullptr; }
 
  private:

@@ -45,7 +45,7 @@ Proposal RegressionGuess::propose(const LinearSystem& system, const SolvePositio
   return {true, 0};
 }
 
-void RegressionGuess::accept(const SolvePosition& at, const VectorX& solution) {
+void RegressionGuess::accept(const LinearSystem&, const SolvePosition& at, const VectorX& solution) {
   History& h = history(at);
   h.newest = h.known == 0 ? 0 : (h.newest + 1) % size_;
   h.known = std::min(h.known + 1, size_);
@@ -55,6 +55,11 @@ void RegressionGuess::accept(const SolvePosition& at, const VectorX& solution) {
   h.gram.col(h.newest) = h.products;
   h.gram.row(h.newest) = h.gram.col(h.newest).transpose();
   h.gram(h.newest, h.newest) = h.squared_norm;
+}
+
+void RegressionGuess::accept_total(int rod, int step, const VectorX& total) {
+  History& h = history({step, 0, rod});
+  if (h.last_step == step) h.solutions.col(h.newest) = total;
 }
 
 }  // namespace rodsweep

@@ -22,7 +22,8 @@ class RegressionGuess : public InitialGuess {
   /// direct solves. As with extrapolation, a time step without a solution starts the history again.
   RegressionGuess(const Scene& scene, int newton_iterations, int size, double noise);
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
-  void accept(const SolvePosition& at, const VectorX& solution) override;
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
+  void accept_total(int rod, int step, const VectorX& total) override;
 
  private:
   using Matrix = Eigen::MatrixXd;

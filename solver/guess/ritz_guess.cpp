@@ -30,11 +30,10 @@ RitzGuess::RitzGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, in
   for (const Rod& rod : scene.rods) {
     const int n = 6 * rod.joint_count();
     const StoredVectors none(n, size);
-    Space space{none, none, 0, StoredVectors(n, size + collected), {}, {}, {}, VectorX::Zero(n), VectorX::Zero(n), 0};
-    space.images.setZero(n, size + collected);
-    space.combined.setZero(n, size);
-    spaces_.push_back(std::move(space));
-    spaces_.back().values.reserve(static_cast<std::size_t>(size));
+    const Basis basis{StoredVectors(n, size + collected), Eigen::MatrixXd::Zero(n, size + collected), {}};
+    spaces_.push_back(
+        {none, none, 0, basis, basis, false, Eigen::MatrixXd::Zero(n, size), VectorX::Zero(n), VectorX::Zero(n), 0});
+    for (Basis* of : {&spaces_.back().begun, &spaces_.back().basis}) of->values.reserve(static_cast<std::size_t>(size));
   }
 }
 
@@ -44,6 +43,7 @@ Proposal RitzGuess::propose(const LinearSystem& system, const SolvePosition& at,
   matrix_ = &system.matrix();
   collecting_ = at.step >= space.next_step;
   collected_ = 0;
+  if (std::exchange(space.changed, false)) space.basis = space.begun;
   Proposal proposal = inner_->propose(system, at, x0);
   if (space.known == 0) return proposal;
 
@@ -69,25 +69,28 @@ void RitzGuess::reduce(double* r) {
   Space& space = *space_;
   if (space.known > 0) projection_.reduce(r);
   if (!collecting_) return;
-  if (collected_ == most_collected_) rayleigh_ritz(space);
-  space.images.col(size_ + collected_) = Eigen::Map<const VectorX>(r, space.images.rows());
+  if (collected_ == most_collected_) rayleigh_ritz(space, *matrix_);
+  space.basis.images.col(size_ + collected_) = Eigen::Map<const VectorX>(r, space.basis.images.rows());
 }
 
 void RitzGuess::complete(double* z) {
   Space& space = *space_;
   if (collecting_) {
+    space.changed = true;
     space.scratch = Eigen::Map<const VectorX>(z, space.scratch.size());
-    space.basis.set(size_ + collected_++, space.scratch);
+    space.basis.vectors.set(size_ + collected_++, space.scratch);
   }
   if (space.known > 0) projection_.complete(z);
 }
 
-void RitzGuess::accept(const SolvePosition& at, const VectorX& solution) {
-  inner_->accept(at, solution);
+void RitzGuess::accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
+  inner_->accept(system, at, solution);
   if (collected_ == 0) return;
-  Space& space = *space_;
-  rayleigh_ritz(space);
-  space.known = static_cast<int>(space.values.size());
+  Space& space = spaces_[static_cast<std::size_t>(at.rod)];
+  if (!rayleigh_ritz(space, system.matrix())) return;
+  space.begun = space.basis;
+  space.changed = false;
+  space.known = static_cast<int>(space.begun.values.size());
   for (int k = 0; k < space.known; ++k) {
     space.scratch = space.combined.col(k);
     space.ritz.set(k, space.scratch);
@@ -95,14 +98,14 @@ void RitzGuess::accept(const SolvePosition& at, const VectorX& solution) {
   space.next_step = at.step + lag_steps_;
 }
 
-void RitzGuess::rayleigh_ritz(Space& space) {
-  space.basis.project(*matrix_, space.residual, gram_, coefficients_);
+bool RitzGuess::rayleigh_ritz(Space& space, const BlockMatrix& a) {
+  space.basis.vectors.project(a, space.residual, gram_, coefficients_);
   const bool finite = orthonormalise(space);
   collected_ = 0;
-  if (!finite) return;
+  if (!finite) return false;
   mass_.noalias() = gram_.lazyProduct(combinations_);
   gram_.noalias() = combinations_.transpose().lazyProduct(mass_);
-  if (!gram_.allFinite()) return;
+  if (!gram_.allFinite()) return false;
   // Dropped combinations are zero. Their eigenvalue is the largest, so that they come last.
   const double largest = 2 * gram_.trace();
   for (int i = 0; i < gram_.rows(); ++i)
@@ -111,18 +114,19 @@ void RitzGuess::rayleigh_ritz(Space& space) {
   mass_.noalias() = combinations_.lazyProduct(eigen_.eigenvectors());
   const int spanned = static_cast<int>(std::count(dropped_.begin(), dropped_.end(), false));
   const int kept = std::min(size_, spanned);
-  space.values.assign(eigen_.eigenvalues().begin(), eigen_.eigenvalues().begin() + kept);
+  space.basis.values.assign(eigen_.eigenvalues().begin(), eigen_.eigenvalues().begin() + kept);
   restart(space, kept);
+  return true;
 }
 
 bool RitzGuess::orthonormalise(Space& space) {
-  const int known = static_cast<int>(space.values.size());
+  const int known = static_cast<int>(space.basis.values.size());
   const auto used = [&](int i) { return i < known || (i >= size_ && i < size_ + collected_); };
   const int most = static_cast<int>(mass_.rows());
   combinations_.setZero();
   for (int k = 0; k < most; ++k) {
     if (!used(k)) continue;
-    space.basis.dots(space.images.col(k).data(), coefficients_);
+    space.basis.vectors.dots(space.basis.images.col(k).data(), coefficients_);
     for (int i = 0; i < most; ++i)
       if (used(i)) combinations_(i, k) = coefficients_[i];
   }
@@ -145,18 +149,19 @@ bool RitzGuess::orthonormalise(Space& space) {
 
 /// The first vectors of V become V C, and those of M V become M V C, C the first columns of mass_.
 void RitzGuess::restart(Space& space, int kept) {
+  Eigen::MatrixXd& images = space.basis.images;
   for (int k = 0; k < kept; ++k) {
     coefficients_ = mass_.col(k);
-    space.basis.combine(coefficients_, space.scratch);
+    space.basis.vectors.combine(coefficients_, space.scratch);
     space.combined.col(k) = space.scratch;
   }
   for (int k = 0; k < kept; ++k) {
     space.scratch = space.combined.col(k);
-    space.basis.set(k, space.scratch);
+    space.basis.vectors.set(k, space.scratch);
   }
-  for (int row = 0; row < space.images.rows(); ++row) {
-    coefficients_.noalias() = mass_.transpose().lazyProduct(space.images.row(row).transpose());
-    space.images.row(row).head(kept) = coefficients_.head(kept);
+  for (int row = 0; row < images.rows(); ++row) {
+    coefficients_.noalias() = mass_.transpose().lazyProduct(images.row(row).transpose());
+    images.row(row).head(kept) = coefficients_.head(kept);
   }
 }
 

@@ -10,7 +10,8 @@
 // makes V C the new Ritz vectors (a thick restart). M V is known without another product, as M z = r. Combinations of V
 // that are only rounding are dropped. A step costs as many products with A as V has vectors, in one pass.
 //
-// Solves are collected every `lag_steps` time steps. Products that a proposal counts: one per Ritz vector, and one if
+// Solves are collected every `lag_steps` time steps. A system may be proposed for and solved several times: each
+// proposal collects anew, so only the last solve before accept() is learned from. Products that a proposal counts: one per Ritz vector, and one if
 // the residual of x1 is not known. Those of the Rayleigh-Ritz steps are not counted, but their time is: in the solve and
 // in accept(). Only these steps allocate, in Eigen's eigenvalue solver.
 #pragma once
@@ -30,24 +31,32 @@ class RitzGuess : public InitialGuess, private Deflation {
   RitzGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, int size, int collected, int lag_steps);
   void prepare(const SolvePosition& at) override { inner_->prepare(at); }
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
-  void accept(const SolvePosition& at, const VectorX& solution) override;
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
+  void accept_total(int rod, int step, const VectorX& total) override { inner_->accept_total(rod, step, total); }
   Deflation* deflation() override { return this; }
 
-  /// theta of a rod's Ritz vectors, ascending, of the last Rayleigh-Ritz step.
-  const std::vector<double>& ritz_values(int rod) const { return spaces_[static_cast<std::size_t>(rod)].values; }
+  /// theta of a rod's Ritz vectors, ascending.
+  const std::vector<double>& ritz_values(int rod) const { return spaces_[static_cast<std::size_t>(rod)].begun.values; }
 
  private:
-  /// Of one rod. The basis V begins with `size` Ritz vectors of the solve that is collected; unused ones are zero.
+  /// V begins with `size` Ritz vectors; unused ones are zero.
+  struct Basis {
+    StoredVectors vectors;
+    Eigen::MatrixXd images;      ///< M V
+    std::vector<double> values;  ///< theta of the Ritz vectors in V
+  };
+  /// Of one rod.
   struct Space {
     StoredVectors ritz, products;  ///< W, A W: what CG projects out
     int known = 0;                 ///< of W
-    StoredVectors basis;
-    Eigen::MatrixXd images, combined;  ///< M V; scratch for new Ritz vectors
-    std::vector<double> values;        ///< theta of the Ritz vectors in V
+    Basis begun, basis;            ///< as of the last accepted solve; of the solve that is collected
+    bool changed = false;          ///< `basis` differs from `begun`
+    Eigen::MatrixXd combined;      ///< scratch for new Ritz vectors
     VectorX residual, scratch;
     int next_step = 0;  ///< the first whose solve is collected
   };
-  void rayleigh_ritz(Space& space);
+  /// False, and nothing is changed, if a number is not finite.
+  bool rayleigh_ritz(Space& space, const BlockMatrix& a);
   /// Sets combinations_ to those of V that are orthonormal in V^T M V, and dropped_. False if a number is not finite.
   bool orthonormalise(Space& space);
   void restart(Space& space, int kept);

@@ -37,7 +37,7 @@ Proposal SubspaceGuess::propose(const LinearSystem& system, const SolvePosition&
   return {true, h.known};
 }
 
-void SubspaceGuess::accept(const SolvePosition& at, const VectorX& solution) {
+void SubspaceGuess::accept(const LinearSystem&, const SolvePosition& at, const VectorX& solution) {
   History& h = history(at);
   const bool again = h.last_step != at.step - 1 || (window_ == Window::restarted && h.known == size_);
   if (again) h.known = 0;
@@ -45,6 +45,11 @@ void SubspaceGuess::accept(const SolvePosition& at, const VectorX& solution) {
   h.known = std::min(h.known + 1, size_);
   h.last_step = at.step;
   h.solutions.set(h.newest, solution);
+}
+
+void SubspaceGuess::accept_total(int rod, int step, const VectorX& total) {
+  History& h = history({step, 0, rod});
+  if (h.last_step == step) h.solutions.set(h.newest, total);
 }
 
 }  // namespace rodsweep

@@ -23,7 +23,8 @@ class SubspaceGuess : public InitialGuess {
   /// `size` of at least 1. As with extrapolation, a time step without a solution starts the history again.
   SubspaceGuess(const Scene& scene, int newton_iterations, int size, Window window, Use use = Use::guess);
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
-  void accept(const SolvePosition& at, const VectorX& solution) override;
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
+  void accept_total(int rod, int step, const VectorX& total) override;
   Deflation* deflation() override { return deflating_ ? &projection_ : nullptr; }
 
  private:

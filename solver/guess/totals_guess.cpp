@@ -9,22 +9,22 @@ TotalsGuess::TotalsGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner
 void TotalsGuess::prepare(const SolvePosition& at) {
   Total& total = totals_[static_cast<std::size_t>(at.rod)];
   if (at.newton == 0 && !total.told) {
-    inner_->accept({total.step, 0, at.rod}, total.sum);
+    inner_->accept_total(at.rod, total.step, total.sum);
     total.told = true;
   }
   inner_->prepare(at);
 }
 
-void TotalsGuess::accept(const SolvePosition& at, const VectorX& solution) {
+void TotalsGuess::accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
+  inner_->accept(system, at, solution);
   Total& total = totals_[static_cast<std::size_t>(at.rod)];
   if (at.newton == 0) {
     total.sum = solution;
     total.step = at.step;
     total.told = false;
-    return;
+  } else if (total.step == at.step) {
+    total.sum += solution;
   }
-  if (total.step == at.step) total.sum += solution;
-  inner_->accept(at, solution);
 }
 
 }  // namespace rodsweep

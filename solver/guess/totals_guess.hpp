@@ -1,9 +1,10 @@
-// Gives another guess a history of whole steps: for the first Newton iteration it receives the sum of a step's
-// increments instead of that iteration's own solution,
+// Gives another guess a history of whole steps: the sum of a step's increments replaces the solution of its first
+// Newton iteration,
 //   x_n = sum_j dlambda_j of step n.
 // In a closed loop the first iteration's solution is inexact, and later iterations correct it: the sum is the best
-// known solution of the step's first system. It is complete at the next step's first system, when prepare() passes it
-// to the inner guess. Later iterations keep their own histories.
+// known change of the step. It is complete at the next step's first system, when prepare() passes it to the inner guess
+// (accept_total). The inner guess accepts the solution of every system as without totals, and later iterations keep
+// their own histories.
 #pragma once
 
 #include <memory>
@@ -20,7 +21,7 @@ class TotalsGuess : public InitialGuess {
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override {
     return inner_->propose(system, at, x0);
   }
-  void accept(const SolvePosition& at, const VectorX& solution) override;
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
   Deflation* deflation() override { return inner_->deflation(); }
 
  private:

@@ -1,7 +1,7 @@
 /* A plug-in of rodsweep: an initial guess for CG or a preconditioner, in any language that can export C functions.
  *
  * A shared library exports rodsweep_plugin(), and a job names it in its guesses, {"plugin": {"library": "libmine.so"}},
- * or as {"preconditioner": "own", "own_preconditioner": {"library": "libmine.so"}} in its "solve". Every task makes
+ * or as {"preconditioner": "plugin", "plugin_preconditioner": {"library": "libmine.so"}} in its "solve". Every task makes
  * instances of its own. An error ends the task with its text: write it to `error`, with a zero at the end and at most
  * RODSWEEP_ERROR_BYTES bytes, and return the value that says so. Numbers are doubles in SI units; pointers are valid
  * during the call. After a call floating-point rounding is as before, and after create and destroy the current folder.
@@ -13,8 +13,9 @@
 extern "C" {
 #endif
 
-#define RODSWEEP_PLUGIN_VERSION 1
+#define RODSWEEP_PLUGIN_VERSION 2
 #define RODSWEEP_ERROR_BYTES 1024
+#define RODSWEEP_MOST_PRODUCTS 32000 /* files store counts in 16 bits */
 #ifdef __GNUC__
 #define RODSWEEP_EXPORT __attribute__((visibility("default")))
 #else
@@ -53,10 +54,15 @@ typedef struct rodsweep_plugin_functions {
   void* (*create)(const char* options, const rodsweep_rod* rods, int count, char* error);
   void (*destroy)(void* instance);
   /* Writes x0 [joints][6]. Returns 1, or 0 for a guess of zero, or -1: error. `products` is 0; set it to the number of
-   * products with A that were made. May be called several times for a system; then it must give the same x0. */
+   * products with A that were made, at most RODSWEEP_MOST_PRODUCTS. Is called several times for a system, and must give
+   * the same each time. */
   int (*propose)(void* instance, const rodsweep_system* system, double* x0, int* products, char* error);
-  /* Receives the solution of the system last proposed for. Returns 0, or -1: error. May be NULL. */
+  /* Receives the system last proposed for, with its solution. Returns 0, or -1: error. May be NULL. */
   int (*accept)(void* instance, const rodsweep_system* system, const double* solution, char* error);
+  /* Only within the guess "totals", before a rod's next step: receives the sum of the solutions [joints][6] of all Newton
+   * iterations of a step. It is a better guess for the first iteration of the next step than the accepted solution of
+   * this one's, but not the solution of any system. Returns 0, or -1: error. NULL: the guess does not use sums. */
+  int (*accept_total)(void* instance, int rod, int step, const double* total, char* error);
   /* Prepares a preconditioner P for A. Returns 1, or 0 if there is none for this A (CG ends as `indefinite`), or -1:
    * error. Here and in apply, a guess has NULL; a preconditioner has NULL in propose. */
   int (*set_up)(void* instance, const rodsweep_system* system, char* error);

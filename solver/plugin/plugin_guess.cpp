@@ -1,7 +1,5 @@
 #include "solver/plugin/plugin_guess.hpp"
 
-#include <algorithm>
-
 namespace rodsweep {
 
 PluginGuess::PluginGuess(const PluginSource& source, const Scene& scene)
@@ -9,17 +7,32 @@ PluginGuess::PluginGuess(const PluginSource& source, const Scene& scene)
   if (!instance_.functions().propose) throw instance_.error("lacks propose");
 }
 
-Proposal PluginGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
-  system_ = plugin_system(scene_.rods[static_cast<std::size_t>(at.rod)], system, at);
-  int products = 0;
-  const bool nonzero = instance_.call(instance_.functions().propose, &system_, x0.data(), &products) > 0;
-  if (!nonzero) x0.setZero();
-  if (!x0.allFinite()) throw instance_.error("proposed a guess that is not finite");
-  return {nonzero, std::max(products, 0)};
+rodsweep_system PluginGuess::view(const LinearSystem& system, const SolvePosition& at) const {
+  return plugin_system(scene_.rods[static_cast<std::size_t>(at.rod)], system, at);
 }
 
-void PluginGuess::accept(const SolvePosition&, const VectorX& solution) {
-  if (const auto accept = instance_.functions().accept) instance_.call(accept, &system_, solution.data());
+Proposal PluginGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
+  const rodsweep_system seen = view(system, at);
+  int products = 0;
+  const bool nonzero = instance_.call(instance_.functions().propose, &seen, x0.data(), &products) > 0;
+  if (!nonzero) x0.setZero();
+  if (!x0.allFinite()) throw instance_.error("proposed a guess that is not finite");
+  if (products < 0 || products > RODSWEEP_MOST_PRODUCTS)
+    throw instance_.error("counted " + std::to_string(products) + " products with A; must be from 0 to " +
+                          std::to_string(RODSWEEP_MOST_PRODUCTS));
+  return {nonzero, products};
+}
+
+void PluginGuess::accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
+  const auto accept = instance_.functions().accept;
+  if (!accept) return;
+  const rodsweep_system seen = view(system, at);
+  instance_.call(accept, &seen, solution.data());
+}
+
+void PluginGuess::accept_total(int rod, int step, const VectorX& total) {
+  if (const auto accept_total = instance_.functions().accept_total)
+    instance_.call(accept_total, rod, step, total.data());
 }
 
 }  // namespace rodsweep

@@ -81,12 +81,12 @@ void classical(benchmark::State& state, Make make) {
     direct.solve(system, at, 0, solution);
     guess->prepare(at);
     guess->propose(system, at, x0);
-    guess->accept(at, solution);
+    guess->accept(system, at, solution);
   }
   for (auto _ : state) {
     guess->prepare(at);
     guess->propose(system, at, x0);
-    guess->accept(at, solution);
+    guess->accept(system, at, solution);
     ++at.step;
     benchmark::ClobberMemory();
   }
@@ -121,7 +121,8 @@ struct Case {
       system->assemble(scene.rods.front(), 0.02);
       direct.solve(*system, last, 0, solution);
       guess->propose(*system, last, x0);
-      for (InitialGuess* one : {base.get(), static_cast<InitialGuess*>(guess.get())}) one->accept(last, solution);
+      for (InitialGuess* one : {base.get(), static_cast<InitialGuess*>(guess.get())})
+        one->accept(*system, last, solution);
     }
     system->assemble(scene.rods.front(), 0.02);
   }

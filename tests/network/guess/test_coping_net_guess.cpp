@@ -44,8 +44,8 @@ TEST_CASE("with the best length what is left of the error is A-orthogonal to the
       VectorX again(solution.size());
       guess.propose(system, at, again);
       CHECK(again == x0);
-      guess.accept(at, solution);
-      base->accept(at, solution);
+      guess.accept(system, at, solution);
+      base->accept(system, at, solution);
     });
     CHECK(corrected > 0);
   }
@@ -64,8 +64,8 @@ TEST_CASE("weights that are not numbers leave the base guess") {
     base->propose(system, at, alone);
     guess.propose(system, at, x0);
     CHECK(x0 == alone);
-    guess.accept(at, solution);
-    base->accept(at, solution);
+    guess.accept(system, at, solution);
+    base->accept(system, at, solution);
   });
 }
 

@@ -27,7 +27,7 @@ TEST_CASE("a guess allocates nothing on a rod seen before, whatever the network"
     for (int step = 0; step < 7; ++step) {
       if (step == 5) before = test::allocations();
       guess.propose(system, {step, 0, 0}, x0);
-      guess.accept({step, 0, 0}, x0);
+      guess.accept(system, {step, 0, 0}, x0);
     }
     CHECK(test::allocations() == before);
   }
@@ -79,7 +79,7 @@ TEST_CASE("nearest neighbours allocate nothing") {
   for (int step = 0; step < 3; ++step) {
     if (step == 1) before = test::allocations();
     CHECK(guess.propose(system, {step, 0, 0}, x0).nonzero);
-    guess.accept({step, 0, 0}, x0);
+    guess.accept(system, {step, 0, 0}, x0);
   }
   CHECK(test::allocations() == before);
 }

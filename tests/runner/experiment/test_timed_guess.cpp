@@ -19,7 +19,7 @@ class Slow : public InitialGuess {
     sleep(propose_ms_);
     return {};
   }
-  void accept(const SolvePosition&, const VectorX&) override { sleep(accept_ms_); }
+  void accept(const LinearSystem&, const SolvePosition&, const VectorX&) override { sleep(accept_ms_); }
 
  private:
   static void sleep(int ms) { test::HandClock::pass(std::chrono::milliseconds(ms)); }
@@ -34,7 +34,7 @@ double seconds_of(int prepare_ms, int propose_ms, int accept_ms) {
   guess.prepare({});
   guess.propose(system, {}, x0);
   for (int repeat = 0; repeat < 5; ++repeat) guess.propose_timed(system, {}, x0);
-  guess.accept({}, x0);
+  guess.accept(system, {}, x0);
   return guess.seconds();
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("every system is charged anew") {
   for (int step = 0; step < 20; ++step) {
     guess.prepare({step, 0, 0});
     guess.propose_timed(system, {step, 0, 0}, x0);
-    guess.accept({step, 0, 0}, x0);
+    guess.accept(system, {step, 0, 0}, x0);
     last = guess.seconds();
   }
   CHECK(last == Approx(0.015));

@@ -34,7 +34,7 @@ TEST_CASE("guesses that use a deflating guess deflate when they use it") {
   VectorX x0(one.size());
   const auto inner = [&] {
     auto guess = std::make_unique<SubspaceGuess>(deflating(one.scene, 3));
-    guess->accept({0, 0, 0}, one.exact);
+    guess->accept(one.system, {0, 0, 0}, one.exact);
     return guess;
   };
   FirstGuess first(inner());
@@ -58,8 +58,8 @@ TEST_CASE(
   std::vector<VectorX> stored;
   for (int step = 0; step < 6; ++step) {  // the first two leave the window
     stored.push_back(one.exact + 2 * random.entries(one.size()).cwiseProduct(one.exact));
-    guess.accept({step, 0, 0}, stored.back());
-    subspace.accept({step, 0, 0}, stored.back());
+    guess.accept(one.system, {step, 0, 0}, stored.back());
+    subspace.accept(one.system, {step, 0, 0}, stored.back());
   }
   VectorX x0(one.size()), expected(one.size());
   const Proposal proposal = guess.propose(one.system, {6, 0, 0}, x0);
@@ -94,7 +94,7 @@ TEST_CASE("CG deflated by the modes that it finds last ends in fewer iterations,
   const VectorX s = one.a.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<MatrixX> modes(s.asDiagonal() * one.a * s.asDiagonal());
   SubspaceGuess guess = deflating(one.scene, 12);
-  for (int k = 0; k < 12; ++k) guess.accept({k, 0, 0}, s.cwiseProduct(modes.eigenvectors().col(k)));
+  for (int k = 0; k < 12; ++k) guess.accept(one.system, {k, 0, 0}, s.cwiseProduct(modes.eigenvectors().col(k)));
   VectorX plain = VectorX::Zero(one.size()), x0(one.size());
   const CgReport without = solve(one, plain, false, 1e-8, nullptr);
   REQUIRE(guess.propose(one.system, {12, 0, 0}, x0).nonzero);
@@ -115,7 +115,7 @@ TEST_CASE("deflated by solutions that are nearly the same, CG reaches what its r
     INFO(apart);
     SubspaceGuess guess = deflating(one.scene, 10);
     for (int k = 0; k < 10; ++k)
-      guess.accept({k, 0, 0},
+      guess.accept(one.system, {k, 0, 0},
                    0.9 * exact + std::pow(apart, 1 + k % 3) * random.entries(one.size()).cwiseProduct(exact));
     VectorX x0(one.size()), plain = VectorX::Zero(one.size());
     REQUIRE(guess.propose(one.system, {10, 0, 0}, x0).nonzero);
@@ -130,7 +130,7 @@ TEST_CASE("the same CG deflates one system and not the next") {
   OneRod one;
   SubspaceGuess guess = deflating(one.scene, 2);
   test::Random random(9);
-  for (int k = 0; k < 2; ++k) guess.accept({k, 0, 0}, random.entries(one.size()));
+  for (int k = 0; k < 2; ++k) guess.accept(one.system, {k, 0, 0}, random.entries(one.size()));
   VectorX x0(one.size()), first = VectorX::Zero(one.size()), last = first;
   guess.propose(one.system, {2, 0, 0}, x0);
   ConjugateGradient cg(one.system.matrix(), {});

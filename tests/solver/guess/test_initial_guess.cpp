@@ -44,6 +44,10 @@ Proposed propose(InitialGuess& guess, TwoRods& rods, const SolvePosition& at) {
   return {proposal, x0};
 }
 
+void accept(InitialGuess& guess, const TwoRods& rods, const SolvePosition& at, const VectorX& solution) {
+  guess.accept(rods.systems[at.rod], at, solution);
+}
+
 /// A solution that is a polynomial in the step, in numbers that are exact in floating point.
 VectorX polynomial(int size, int degree, int step) {
   VectorX out(size);
@@ -55,7 +59,7 @@ VectorX polynomial(int size, int degree, int step) {
 TEST_CASE("the zero guess is zero") {
   TwoRods rods;
   ZeroGuess guess;
-  guess.accept({0, 0, 0}, VectorX::Ones(rods.size(0)));
+  accept(guess, rods, {0, 0, 0}, VectorX::Ones(rods.size(0)));
   const Proposed proposed = propose(guess, rods, {1, 0, 0});
   CHECK_FALSE(proposed.nonzero);
   CHECK(proposed.x0.isZero(0));
@@ -72,7 +76,7 @@ TEST_CASE("previous, linear and quadratic reproduce sequences of their degree ex
       CHECK(proposed.nonzero == (step > 0));
       if (step == 0) CHECK(proposed.x0.isZero(0));
       if (step >= terms) CHECK(proposed.x0 == solution);
-      guess.accept({step, 0, 0}, solution);
+      accept(guess, rods, {step, 0, 0}, solution);
     }
   }
 }
@@ -81,25 +85,25 @@ TEST_CASE("with less history than terms, fewer terms are used, and proposing cha
   TwoRods rods;
   ExtrapolationGuess guess(rods.scene, 1, 3);
   const VectorX x[] = {polynomial(rods.size(0), 2, 0), polynomial(rods.size(0), 2, 1), polynomial(rods.size(0), 2, 2)};
-  guess.accept({0, 0, 0}, x[0]);
+  accept(guess, rods, {0, 0, 0}, x[0]);
   CHECK(propose(guess, rods, {1, 0, 0}).x0 == x[0]);
-  guess.accept({1, 0, 0}, x[1]);
+  accept(guess, rods, {1, 0, 0}, x[1]);
   CHECK(propose(guess, rods, {2, 0, 0}).x0 == 2 * x[1] - x[0]);
-  guess.accept({2, 0, 0}, x[2]);
+  accept(guess, rods, {2, 0, 0}, x[2]);
   for (int again = 0; again < 2; ++again) CHECK(propose(guess, rods, {3, 0, 0}).x0 == 3 * x[2] - 3 * x[1] + x[0]);
 }
 
 TEST_CASE("a gap in the steps makes history start again") {
   TwoRods rods;
   ExtrapolationGuess guess(rods.scene, 1, 3);
-  for (int step = 0; step < 5; ++step) guess.accept({step, 0, 0}, polynomial(rods.size(0), 2, step));
+  for (int step = 0; step < 5; ++step) accept(guess, rods, {step, 0, 0}, polynomial(rods.size(0), 2, step));
   const Proposed after_gap = propose(guess, rods, {6, 0, 0});
   CHECK_FALSE(after_gap.nonzero);
   CHECK(after_gap.x0.isZero(0));
   const VectorX new_start = polynomial(rods.size(0), 0, 0), next = polynomial(rods.size(0), 2, 9);
-  guess.accept({6, 0, 0}, new_start);
+  accept(guess, rods, {6, 0, 0}, new_start);
   CHECK(propose(guess, rods, {7, 0, 0}).x0 == new_start);
-  guess.accept({7, 0, 0}, next);
+  accept(guess, rods, {7, 0, 0}, next);
   CHECK(propose(guess, rods, {8, 0, 0}).x0 == 2 * next - new_start);
 }
 
@@ -119,7 +123,7 @@ TEST_CASE("every Newton iteration of every rod has a history of its own") {
           CHECK_FALSE(proposed.nonzero);
         else if (step >= 2)
           CHECK(proposed.x0 == solution(step, newton, rod));
-        guess.accept({step, newton, rod}, solution(step, newton, rod));
+        accept(guess, rods, {step, newton, rod}, solution(step, newton, rod));
       }
 }
 
@@ -142,12 +146,12 @@ TEST_CASE("guesses from history are zero, at no cost, at an iteration without on
     };
     CHECK_FALSE(proposed(0, 1));
     for (const int step : {0, 1}) {
-      guess->accept({step, 1, 0}, one.exact);
+      guess->accept(one.system, {step, 1, 0}, one.exact);
       CHECK_FALSE(proposed(step + 1, 0));  // the other Newton iteration has no history
       CHECK(proposed(step + 1, 1));
     }
     CHECK_FALSE(proposed(3, 1));
-    guess->accept({3, 1, 0}, one.exact);
+    guess->accept(one.system, {3, 1, 0}, one.exact);
     CHECK(proposed(4, 1));
     CHECK(products <= 1);  // only the subspace with its one solution takes one
     CHECK((x0 - one.exact).norm() < 1e-9 * x0.norm());
@@ -176,7 +180,7 @@ TEST_CASE("the oracle's error depends on the seed and the position, and on nothi
   const VectorX expected = propose(guess, rods, at).x0;
   for (int step = 0; step < 4; ++step) {
     propose(late, rods, {step, 0, 1});
-    late.accept({step, 0, 1}, rods.exact(1));
+    accept(late, rods, {step, 0, 1}, rods.exact(1));
   }
   CHECK(propose(late, rods, at).x0 == expected);
   CHECK(propose(guess, rods, at).x0 == expected);
@@ -237,7 +241,7 @@ class Fixed : public InitialGuess {
     x0 = x_;
     return {!x_.isZero(0), 3};
   }
-  void accept(const SolvePosition&, const VectorX& solution) override { *told_ = solution; }
+  void accept(const LinearSystem&, const SolvePosition&, const VectorX& solution) override { *told_ = solution; }
 
  private:
   VectorX x_;
@@ -276,7 +280,7 @@ TEST_CASE("guarded rejects a guess that is not a number, tells it the solution, 
   VectorX told;  // the solution also reaches a guess that was rejected
   GuardedGuess strict(rods.scene, std::make_unique<Fixed>(rods.exact(0), &told), 0);
   CHECK_FALSE(propose(strict, rods, {0, 0, 0}).nonzero);
-  strict.accept({0, 0, 0}, rods.exact(0));
+  accept(strict, rods, {0, 0, 0}, rods.exact(0));
   CHECK(told == rods.exact(0));
   GuardedGuess of_zero(rods.scene, std::make_unique<Fixed>(VectorX::Zero(rods.size(0))), 1e9);
   CHECK_FALSE(propose(of_zero, rods, {0, 0, 0}).nonzero);
@@ -292,9 +296,9 @@ TEST_CASE("first asks and tells another guess at first Newton iterations alone")
   const Proposed later = propose(guess, rods, {3, 1, 0});
   CHECK_FALSE(later.nonzero);
   CHECK(later.x0.isZero(0));
-  guess.accept({3, 1, 0}, rods.exact(0));
+  accept(guess, rods, {3, 1, 0}, rods.exact(0));
   CHECK(told.size() == 0);
-  guess.accept({4, 0, 0}, rods.exact(0));
+  accept(guess, rods, {4, 0, 0}, rods.exact(0));
   CHECK(told == rods.exact(0));
 }
 

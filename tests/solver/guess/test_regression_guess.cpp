@@ -32,7 +32,7 @@ struct OneMatrix : test::OneRod {
   void pass(RegressionGuess& guess, int step, const VectorX& lambda) {
     VectorX x0(size());
     guess.propose(with(lambda), {step, 0, 0}, x0);
-    guess.accept({step, 0, 0}, solution());
+    guess.accept(system, {step, 0, 0}, solution());
   }
 };
 
@@ -80,7 +80,7 @@ TEST_CASE("noise in the stored solutions is not blown up by coefficients of oppo
     const VectorX exact = one.solution(), found = exact + noise * exact.norm() / std::sqrt(one.size()) * one.draw();
     for (RegressionGuess* guess : {&trusting, &damped}) {
       guess->propose(one.system, {step, 0, 0}, x0);
-      guess->accept({step, 0, 0}, found);
+      guess->accept(one.system, {step, 0, 0}, found);
     }
   }
   one.with(lambda + 50 * change);  // exactly 50 x2 - 49 x1

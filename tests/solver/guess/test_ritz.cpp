@@ -25,7 +25,8 @@ int solve(const OneRod& one, RitzGuess& guess, int step, double tolerance = 1e-8
       cg.solve(one.system.rhs(), x, proposal.start(), tolerance, one.system.rhs().norm(), guess.deflation());
   CHECK(report.outcome == SolveOutcome::converged);
   CHECK((one.system.rhs() - one.a * x).norm() < 2 * tolerance * one.system.rhs().norm());
-  guess.accept({step, 0, 0}, VectorX::Zero(one.size()));  // the next solve starts from the Ritz vectors alone
+  guess.accept(one.system, {step, 0, 0},
+               VectorX::Zero(one.size()));  // the next solve starts from the Ritz vectors alone
   return report.iterations;
 }
 

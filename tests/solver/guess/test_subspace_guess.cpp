@@ -27,7 +27,7 @@ TEST_CASE(
     std::vector<VectorX> stored;
     for (int step = 0; step < 4; ++step) {
       stored.push_back(one.exact + 3 * random.entries(one.size()).cwiseProduct(one.exact));
-      guess.accept({step, 0, 0}, stored.back());
+      guess.accept(one.system, {step, 0, 0}, stored.back());
       const Proposal proposal = guess.propose(one.system, {step + 1, 0, 0}, x0);
       CHECK(proposal.nonzero);
       CHECK(proposal.products == step + 1);
@@ -41,9 +41,9 @@ TEST_CASE("a solution within the span is found, also where stored solutions are 
   SubspaceGuess guess(one.scene, 1, 3, Window::sliding);
   const VectorX other = test::Random(5).entries(one.size());
   VectorX x0 = VectorX::Zero(one.size());
-  guess.accept({0, 0, 0}, one.exact + other);
-  guess.accept({1, 0, 0}, other);
-  guess.accept({2, 0, 0}, other * (1 + 1e-15));
+  guess.accept(one.system, {0, 0, 0}, one.exact + other);
+  guess.accept(one.system, {1, 0, 0}, other);
+  guess.accept(one.system, {2, 0, 0}, other * (1 + 1e-15));
   REQUIRE(guess.propose(one.system, {3, 0, 0}, x0).nonzero);
   CHECK(test::energy_error(one.a, x0, one.exact) < 1e-6);
 }
@@ -55,8 +55,8 @@ TEST_CASE("fischer starts again with the newest solution when full, subspace for
   SubspaceGuess fischer(one.scene, 1, 3, Window::restarted), subspace(one.scene, 1, 3, Window::sliding);
   for (int step = 0; step < 4; ++step) {
     stored.push_back(random.entries(one.size()));
-    fischer.accept({step, 0, 0}, stored.back());
-    subspace.accept({step, 0, 0}, stored.back());
+    fischer.accept(one.system, {step, 0, 0}, stored.back());
+    subspace.accept(one.system, {step, 0, 0}, stored.back());
   }
   VectorX x0 = VectorX::Zero(one.size());
   CHECK(fischer.propose(one.system, {4, 0, 0}, x0).products == 1);
@@ -84,7 +84,7 @@ TEST_CASE("fischer and subspace beat zero on a slowly changing rod, and subspace
     for (int g = 0; g < 3; ++g) {
       guesses[g]->propose(system, at, x0);
       if (at.newton == 0) error[g].push_back(test::energy_error(system.matrix().dense(), x0, x));
-      guesses[g]->accept(at, x);
+      guesses[g]->accept(system, at, x);
     }
   });
   double of_fischer = 0, of_subspace = 0;

@@ -12,9 +12,10 @@ namespace rodsweep::test_totals_guess {
 struct Told {
   int step, newton, rod;
   VectorX solution;
+  const LinearSystem* system;  ///< null: a total
 };
 
-/// Records all accepted solutions; proposes their number.
+/// Records all accepted solutions and totals; proposes their number.
 class Listener : public InitialGuess {
  public:
   explicit Listener(std::vector<Told>& told) : told_(told) {}
@@ -22,8 +23,11 @@ class Listener : public InitialGuess {
     x0.setConstant(static_cast<double>(told_.size()));
     return {true, 0};
   }
-  void accept(const SolvePosition& at, const VectorX& solution) override {
-    told_.push_back({at.step, at.newton, at.rod, solution});
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override {
+    told_.push_back({at.step, at.newton, at.rod, solution, &system});
+  }
+  void accept_total(int rod, int step, const VectorX& total) override {
+    told_.push_back({step, 0, rod, total, nullptr});
   }
 
  private:
@@ -36,9 +40,9 @@ Scene two_rods() {
   return scene;
 }
 
-TEST_CASE("the history of the first iteration is of what whole steps add up to, those of later ones of their own") {
+TEST_CASE("every solution is accepted with its system, and the sum of a step follows before the next step") {
   const Scene scene = two_rods();
-  const LinearSystem system(scene.rods[0]);
+  const LinearSystem systems[] = {LinearSystem(scene.rods[0]), LinearSystem(scene.rods[1])};
   std::vector<Told> told;
   TotalsGuess guess(scene, std::make_unique<Listener>(told));
   VectorX x0(18);
@@ -47,18 +51,22 @@ TEST_CASE("the history of the first iteration is of what whole steps add up to, 
     for (int newton = 0; newton < 3; ++newton)
       for (int rod = 0; rod < 2; ++rod) {
         guess.prepare({step, newton, rod});
-        guess.propose(system, {step, newton, rod}, x0);
-        guess.accept({step, newton, rod}, constant(100 * step + 10 * newton + rod));
+        guess.propose(systems[rod], {step, newton, rod}, x0);
+        guess.accept(systems[rod], {step, newton, rod}, constant(100 * step + 10 * newton + rod));
       }
-  std::vector<std::tuple<int, int, int, double>> seen;
+  std::vector<std::tuple<int, int, int, double>> accepted, totals;
   for (const Told& t : told) {
     CHECK(t.solution == constant(t.solution[0]));
-    seen.emplace_back(t.step, t.newton, t.rod, t.solution[0]);
+    if (t.system) CHECK(t.system == &systems[t.rod]);
+    (t.system ? accepted : totals).emplace_back(t.step, t.newton, t.rod, t.solution[0]);
   }
-  const std::vector<std::tuple<int, int, int, double>> expected{
-      {0, 1, 0, 10}, {0, 1, 1, 11},  {0, 2, 0, 20},  {0, 2, 1, 21},  {0, 0, 0, 30},
-      {0, 0, 1, 33}, {1, 1, 0, 110}, {1, 1, 1, 111}, {1, 2, 0, 120}, {1, 2, 1, 121}};
-  CHECK(seen == expected);
+  const std::vector<std::tuple<int, int, int, double>> solutions{
+      {0, 0, 0, 0},   {0, 0, 1, 1},   {0, 1, 0, 10},  {0, 1, 1, 11},  {0, 2, 0, 20},  {0, 2, 1, 21},
+      {1, 0, 0, 100}, {1, 0, 1, 101}, {1, 1, 0, 110}, {1, 1, 1, 111}, {1, 2, 0, 120}, {1, 2, 1, 121}};
+  CHECK(accepted == solutions);
+  CHECK(totals == std::vector<std::tuple<int, int, int, double>>{{0, 0, 0, 30}, {0, 0, 1, 33}});
+  CHECK(told[6].system == nullptr);  // the total of step 0 of a rod before its first solution of step 1
+  CHECK(told[8].system == nullptr);
 }
 
 TEST_CASE("proposing tells nothing: totals are told before, once") {
@@ -69,14 +77,14 @@ TEST_CASE("proposing tells nothing: totals are told before, once") {
   VectorX x0(18), again(18);
   guess.prepare({0, 0, 0});
   guess.propose(system, {0, 0, 0}, x0);
-  guess.accept({0, 0, 0}, VectorX::Ones(18));
-  CHECK(told.empty());
-  guess.prepare({1, 0, 0});
+  guess.accept(system, {0, 0, 0}, VectorX::Ones(18));
   CHECK(told.size() == 1);
+  guess.prepare({1, 0, 0});
+  CHECK(told.size() == 2);
   guess.propose(system, {1, 0, 0}, x0);
   guess.propose(system, {1, 0, 0}, again);
   guess.prepare({1, 1, 0});
-  CHECK(told.size() == 1);
+  CHECK(told.size() == 2);
   CHECK(x0 == again);
 }
 
@@ -85,9 +93,9 @@ TEST_CASE("a guess around totals has them told") {
   const LinearSystem system(scene.rods[0]);
   std::vector<Told> told;
   GuardedGuess guess(scene, std::make_unique<TotalsGuess>(scene, std::make_unique<Listener>(told)), 1);
-  guess.accept({0, 0, 0}, VectorX::Ones(18));
+  guess.accept(system, {0, 0, 0}, VectorX::Ones(18));
   guess.prepare({1, 0, 0});
-  CHECK(told.size() == 1);
+  CHECK(told.size() == 2);
 }
 
 TEST_CASE("a regression combines totals as the first right-hand sides of their steps make up today's") {
@@ -104,12 +112,12 @@ TEST_CASE("a regression combines totals as the first right-hand sides of their s
     later[step] = random.entries(30);
     guess.prepare({step, 0, 0});
     guess.propose(system, {step, 0, 0}, x0);
-    guess.accept({step, 0, 0}, first[step]);
+    guess.accept(system, {step, 0, 0}, first[step]);
     rod.lambda = random.entries(30);
     system.assemble(rod, 0.02);
     guess.prepare({step, 1, 0});
     guess.propose(system, {step, 1, 0}, x0);
-    guess.accept({step, 1, 0}, later[step]);
+    guess.accept(system, {step, 1, 0}, later[step]);
   }
   rod.lambda = 3 * lambda[0] - 2 * lambda[1];  // b is -C - alpha~ lambda with C = 0 in all steps
   system.assemble(rod, 0.02);

@@ -1,7 +1,8 @@
 /* The plug-in of the tests: the last solution of the same rod and Newton iteration, and the diagonal as preconditioner. Its
- * options ask for other things: "b": x0 = A b; "nan": x0 and z are not numbers; "create", "propose", "accept", "set_up",
- * "apply": an error there; "none": no preconditioner; "rounds": each function changes how numbers are rounded; "leaves":
- * create and destroy change the folder; "endless": propose returns when it is interrupted; "forks": it returns twice. */
+ * options ask for other things: "b": x0 = A b; "products N": zero, of N products; "nan": x0 and z are not numbers; "create",
+ * "propose", "accept", "set_up", "apply": an error there; "none": no preconditioner; "rounds": each function changes how
+ * numbers are rounded; "leaves": create and destroy change the folder; "endless": propose returns when it is interrupted;
+ * "forks": it returns twice. */
 #include <fenv.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -93,6 +94,7 @@ static int propose(void* instance, const rodsweep_system* system, double* x0, in
     x0[0] = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return 1;
   }
+  if (sscanf(self->options, "products %d", products) == 1) return 0;
   if (strcmp(self->options, "b") == 0) {
     multiply(system, system->b, x0);
     *products = 1;

@@ -40,8 +40,8 @@ TEST_CASE("a plug-in that keeps the last solution proposes what `previous` does"
       CHECK(proposal.products == 0);
       CHECK(x0 == expected);
       const VectorX solution = random.entries(one.size());
-      plugin.accept(at, solution);
-      previous.accept(at, solution);
+      plugin.accept(one.system, at, solution);
+      previous.accept(one.system, at, solution);
     }
 }
 
@@ -55,6 +55,17 @@ TEST_CASE("a plug-in sees A and b, and its products are counted") {
   CHECK((x0 - one.a * one.system.rhs()).norm() < 1e-13 * x0.norm());
 }
 
+TEST_CASE("a number of products that the files cannot hold is refused") {
+  OneRod one;
+  VectorX x0(one.size());
+  PluginGuess negative(example("products -1"), one.scene), large(example("products 32001"), one.scene),
+      most(example("products 32000"), one.scene);
+  CHECK_THROWS_WITH(negative.propose(one.system, {0, 0, 0}, x0),
+                    Contains("plug-in example: counted -1 products with A; must be from 0 to 32000"));
+  CHECK_THROWS_WITH(large.propose(one.system, {0, 0, 0}, x0), Contains("counted 32001 products"));
+  CHECK(most.propose(one.system, {0, 0, 0}, x0).products == 32000);
+}
+
 TEST_CASE("what a plug-in says of an error is the text of the exception") {
   OneRod one;
   VectorX x0(one.size());
@@ -64,9 +75,9 @@ TEST_CASE("what a plug-in says of an error is the text of the exception") {
       nan(example("nan"), one.scene);
   CHECK_THROWS_WITH(proposes.propose(one.system, {7, 0, 0}, x0), Contains("no guess in step 7"));
   accepts.propose(one.system, {3, 0, 0}, x0);
-  CHECK_THROWS_WITH(accepts.accept({3, 0, 0}, x0), Contains("the solution of step 3 is not wanted"));
+  CHECK_THROWS_WITH(accepts.accept(one.system, {3, 0, 0}, x0), Contains("the solution of step 3 is not wanted"));
   nan.propose(one.system, {0, 0, 0}, x0);
-  nan.accept({0, 0, 0}, x0);
+  nan.accept(one.system, {0, 0, 0}, x0);
   CHECK_THROWS_WITH(nan.propose(one.system, {1, 0, 0}, x0), Contains("not finite"));
 }
 

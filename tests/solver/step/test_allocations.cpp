@@ -38,7 +38,7 @@ class CgSolve : public LinearSolve {
     const bool nonzero = guess_->propose(system, at, delta_lambda).nonzero;
     const CgReport report =
         cg_->solve(system.rhs(), delta_lambda, nonzero, 1e-6, cg_->norm_of(system.rhs()), guess_->deflation());
-    guess_->accept(at, delta_lambda);
+    guess_->accept(system, at, delta_lambda);
     return report.outcome;
   }
   int calls = 0;

@@ -23,7 +23,7 @@ TEST_CASE("cg from a history reaches the direct solve's balanced steps") {
     cg->matrix_changed();
     const bool nonzero = guess.propose(system, at, x).nonzero;
     const CgReport report = cg->solve(system.rhs(), x, nonzero, 1e-8, system.rhs().norm());
-    guess.accept(at, x);
+    guess.accept(system, at, x);
     return report.outcome;
   });
   LinearProjection by_cg(scene, solve, 1e-9);
