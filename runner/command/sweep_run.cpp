@@ -376,6 +376,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
     dispatch.ranks_lost ? file.leave() : file.close();
     by_rank_0(dispatch.ranks_lost ? std::nullopt : std::optional(mpi.world()), [&] { file.check_written(); });
+    for (const Dispatch::Failure& of : dispatch.warnings) console.warn(fmt::format("task {}: {}", of.task, of.message));
     console.result(summary_text(summary));
     if (dispatch.left > 0) console.note(ended_text(summary, options, mpi.size()));
     return code;

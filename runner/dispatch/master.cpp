@@ -140,16 +140,24 @@ void Master::count(const PendingTask& task, const Report& report) {
   ++dispatch_.finished.at(static_cast<std::size_t>(report.outcome));
   if (report.outcome != TaskOutcome::ok && dispatch_.failures.size() < failures_kept)
     dispatch_.failures.push_back({task.index, report.outcome, std::string(report.message())});
+  if (report.outcome == TaskOutcome::ok && !report.message().empty()) warn(task.index, report.message());
   progress_->finished(report.outcome, task.cost, report.busy_s);
+}
+
+/// Keeps a warning unless an earlier task had the same.
+void Master::warn(std::int64_t task, std::string_view text) {
+  auto& warnings = dispatch_.warnings;
+  const bool known = std::any_of(warnings.begin(), warnings.end(), [&](const auto& w) { return w.message == text; });
+  if (!known && warnings.size() < failures_kept) warnings.push_back({task, TaskOutcome::ok, std::string(text)});
 }
 
 void Master::uncount(const PendingTask& task, const Report& report) {
   ++dispatch_.left;
   --dispatch_.finished.at(static_cast<std::size_t>(report.outcome));
-  auto& failures = dispatch_.failures;
-  failures.erase(std::remove_if(failures.begin(), failures.end(),
-                                [&](const Dispatch::Failure& failure) { return failure.task == task.index; }),
-                 failures.end());
+  for (auto* kept : {&dispatch_.failures, &dispatch_.warnings})
+    kept->erase(std::remove_if(kept->begin(), kept->end(),
+                               [&](const Dispatch::Failure& one) { return one.task == task.index; }),
+                kept->end());
   progress_->uncount(report.outcome, task.cost, report.busy_s);
 }
 

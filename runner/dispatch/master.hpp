@@ -64,6 +64,7 @@ struct Dispatch {
 
   std::array<std::int64_t, task_outcomes> finished{};  ///< by TaskOutcome
   std::vector<Failure> failures;                       ///< the first few
+  std::vector<Failure> warnings;                       ///< of tasks that are ok: the first few different ones
   std::int64_t left = 0;                               ///< not run or abandoned; 0 unless stopped early
   int signal = 0;                                      ///< the signal that stopped the sweep
   bool late = false;                                   ///< stopped by the time limit
@@ -116,6 +117,7 @@ class Master {
   void report(int rank, const Report& report);
   void count(const PendingTask& task, const Report& report);
   void uncount(const PendingTask& task, const Report& report);
+  void warn(std::int64_t task, std::string_view text);
   static void remove_saved(Worker& worker);
   void stop(int signal);
   void assign_tasks();

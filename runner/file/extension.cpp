@@ -157,7 +157,8 @@ bool Extension::take(std::int64_t index, TaskRecord& record) const {
 }
 
 std::string complete(const Task& task, TaskRecord& record, const TaskRecord& taken) {
-  if (record.outcome != taken.outcome || record.message != taken.message) {
+  const bool is_ok = record.outcome == TaskOutcome::ok;  // then a message is a warning about a guess
+  if (record.outcome != taken.outcome || (!is_ok && record.message != taken.message)) {
     return fmt::format("it ended as {} ({}), before as {} ({})", to_string(record.outcome), record.message,
                        to_string(taken.outcome), taken.message);
   }
@@ -175,6 +176,7 @@ std::string complete(const Task& task, TaskRecord& record, const TaskRecord& tak
     for (std::size_t g = 0; g < guesses; ++g)
       if (taken.timing.copied_guess[g] == 1) copy_guess(column, task, taken, {g, guesses}, record, {g, guesses});
   }
+  if (record.message.empty()) record.message = taken.message;
   record.timing.source_task = taken.timing.source_task;
   return {};
 }

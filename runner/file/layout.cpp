@@ -73,7 +73,8 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
   fields.push_back(number_field<std::uint8_t>("/tasks/state", {plan.size()}, "1",
                                               "1: complete, all of its rows are valid; 0: pending, ignore its rows"));
   fields.push_back(text_field("/tasks/outcome", outcome_bytes, {plan.size()}, "how the task ended"));
-  fields.push_back(text_field("/tasks/message", message_bytes, {plan.size()}, "details if the outcome is not ok"));
+  fields.push_back(
+      text_field("/tasks/message", message_bytes, {plan.size()}, "why the outcome is not ok, or a warning"));
   fields.push_back(number_field<std::uint64_t>("/tasks/checksum", {plan.size()}, "1",
                                                "checksum of all data of the task outside /timing"));
   for (const Column& column : columns()) {

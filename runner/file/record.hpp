@@ -66,7 +66,7 @@ struct CountSums {
 
 struct TaskRecord {
   TaskOutcome outcome = TaskOutcome::pending;
-  std::string message;  ///< for outcomes other than ok: the reason and the step
+  std::string message;  ///< for outcomes other than ok: the reason and the step; else a warning or nothing
 
   struct Tasks {  // [1 ...]; state and checksum are ResultsFile's
     Cells<std::int32_t> steps_done;

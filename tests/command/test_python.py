@@ -157,6 +157,49 @@ class Python(WithPython):
         with h5py.File("s.h5") as file:
             self.assertEqual(set(file["/solves/start_matvecs"][:, 1]), {3})    # and the first residual
 
+    def test_a_number_of_products_that_cannot_be_is_refused(self):
+        for number, words in (("-5", "mine.py: counted -5 products with A; must be from 0 to 32000"),
+                              ("40000", "mine.py: counted 40000 products with A; must be from 0 to 32000"),
+                              ("2 ** 70", "must be from 0 to 32000"), ("-2 ** 70", "must be from 0 to 32000"),
+                              ("'x'", "mine.py: propose() returned (x0, 'x'); the second must be the number of products with A, "
+                                      "an int"),
+                              ("1.0", "propose() returned (x0, 1.0); the second must be")):
+            self.assertIn(words, self.error(guess(f"def propose(self, system): return 0 * system.b, {number}")))
+
+    def test_a_guess_with_two_answers_for_a_system_is_named_in_a_warning(self):
+        self.write("mine.py", guess("def propose(self, system): return np.random.rand(len(system.b))"))
+        done = self.ran("run", self.job({"python": {"file": "mine.py"}}, "previous"), "-o", "s.h5")
+        self.assertIn('warning: task 0: the guess "python mine" gave two different answers for the same system', done.stderr)
+        with h5py.File("s.h5") as file:
+            self.assertEqual(file["/tasks/outcome"][0].rstrip(b"\0"), b"ok")
+            self.assertIn(b'the guess "python mine" gave two', file["/tasks/message"][0])
+
+    def test_within_totals_it_gets_the_sum_of_a_step(self):
+        last = guess("last = {}\n    def propose(self, system): return self.last.get((system.rod, system.newton))\n"
+                     "    def accept(self, system, x): self.last[system.rod, system.newton] = x\n"
+                     "    def accept_total(self, rod, step, x): self.last[rod, 0] = x")
+        self.write("mine.py", last)
+        own = {"python": {"file": "mine.py"}}
+        self.ran("run", self.job("previous", own, {"totals": {"guess": "previous"}}, {"totals": {"guess": own}},
+                                 evaluation="closed_loop"), "-o", "s.h5")
+        with h5py.File("s.h5") as file:
+            sums = {file["/axes/guess"][guess].decode(): file["/tasks/iterations_sum_all"][task, guess].tolist()
+                    for task, guess in enumerate(file["/tasks/own_guess"]) if guess >= 0}
+        self.assertEqual(sums["python mine"], sums["previous"])
+        self.assertEqual(sums["totals python mine"], sums["totals previous"])
+        self.assertNotEqual(sums["totals previous"], sums["previous"])
+
+    def test_a_preconditioner_that_leaves_a_part_out_is_found(self):
+        self.write("mine.py", "class Preconditioner:\n    def __init__(self, rods, options): pass\n"
+                              "    def set_up(self, system): self.d = 1 / system.A.diagonal()\n"
+                              "    def apply(self, r):\n        z = self.d * r\n        z[6:] = 0\n        return z\n")
+        for norm in ("true_residual", "natural"):
+            self.ran("run", self.job(solve={"method": "cg", "preconditioner": "python", "tolerance": 1e-6, "norm": norm,
+                                            "python_preconditioner": {"file": "mine.py"}}, evaluation="closed_loop"),
+                     "-o", f"{norm}.h5", code=3)
+            with h5py.File(f"{norm}.h5") as file:
+                self.assertEqual(file["/tasks/outcome"][0].rstrip(b"\0"), b"indefinite")
+
     def test_a_sweep_is_not_resumed_with_another_file(self):
         self.new("guess", "mine.py")
         self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5")

@@ -220,4 +220,17 @@ TEST_CASE("a worker runs an assignment at once and reports each of its tasks") {
   CHECK(dispatch.failures.front().message == "joint gap 12");
 }
 
+TEST_CASE("the message of a task that is ok is a warning, kept once") {
+  Sweep sweep(1, {{0, 1}, {1, 1}, {2, 1}});
+  const TaskBody body = [](std::int64_t task, const StopRequested&) {
+    return TaskResult{TaskOutcome::ok, task == 1 ? "" : "two answers"};
+  };
+  Worker worker(sweep.network[1], body, no_signal);
+  while (sweep.master.step() != Master::Step::finished) worker.step();
+  const Dispatch& dispatch = sweep.master.dispatch();
+  CHECK(dispatch.failures.empty());
+  REQUIRE(dispatch.warnings.size() == 1);
+  CHECK(dispatch.warnings.front().message == "two answers");
+}
+
 }  // namespace test_dispatch

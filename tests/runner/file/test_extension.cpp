@@ -154,6 +154,15 @@ TEST_CASE("what is taken over stands at its new rows, and a simulation that diff
   other.outcome = TaskOutcome::diverged;
   other.message = "step 1: too far";
   CHECK(complete(task, other, taken) == "it ended as diverged (step 1: too far), before as ok ()");
+  other = taken;  // a warning about a new guess, or about one that is copied, does not mean another trajectory
+  other.message = "the guess gave two answers";
+  CHECK(complete(task, other, taken) == "");
+  CHECK(other.message == "the guess gave two answers");
+  TaskRecord warned = taken;
+  warned.message = "another guess gave two answers";
+  other.message = "";
+  CHECK(complete(task, other, warned) == "");
+  CHECK(other.message == "another guess gave two answers");
 }
 
 TEST_CASE(
