@@ -56,7 +56,7 @@ def main():
 def all_figures(file, options, shown, by_newton):
     made = {"cg-ratio": figures.ratio_figure(shown, commandline.chosen_tolerances(file, options))}
     if by_newton is None:
-        why = "record.solves is \"summary\"" if not timings.timed(file) else "they are not numbers"
+        why = "record.solves is \"summary\"" if not timings.timed(file) else "no task solved all to the tolerance"
         print(f"{file.path} has no times of single solves ({why}): CG ratios only", file=sys.stderr)
         return made
     made["speedup"] = figures.speedup_figure(shown, by_newton)

@@ -16,7 +16,7 @@ import math
 import os
 import sys
 
-from rodsweep.reading import blocks, commandline, groups, measures, remarks, texts, timings
+from rodsweep.reading import blocks, commandline, groups, measures, remarks, texts, timings, unconverged
 from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
@@ -81,7 +81,12 @@ def heading(file, sims, chosen, census):
     said = remarks.conditions(file, sims.tasks())
     solver = (f"{said['evaluation']} evaluation; preconditioner {said['preconditioner']}; residual test: {said['norm']}"
               if said["evaluation"] else "advanced by the direct solve, no guesses")
-    return lines + [f"{solver}; time step {said['step_s']} s"]
+    return lines + [f"{solver}; time step {said['step_s']} s", *_unconverged(file, sims)]
+
+
+def _unconverged(file, sims):
+    said = (of(file, sims.tasks()) for of in (unconverged.missed_text, unconverged.newton_text))
+    return [f"WARNING: {text}" for text in said if text]
 
 
 def ratio_lines(file, found, guesses, tolerances, newton):
@@ -143,7 +148,8 @@ def speedup_lines(file, sims, found, guesses, newton):
         title, first = _titled(block, block.times["cg_us"].count[guesses])
         rows = [[first, "guess µs", "solve µs"] + [timings.SPEEDUPS[name] for name in names]]
         for g in guesses:
-            over_zero = ["1" if g == file.zero else
+            timed = math.isfinite(block.times["cg_us"].value[g])
+            over_zero = ["1" if g == file.zero and timed else
                          texts.interval_text(block.speedup[name][g]) if block.speedup else "-" for name in names]
             rows.append(["  " + file.guesses[g], texts.fixed_text(block.times["guess_us"].value[g], 2),
                          texts.fixed_text(block.times["cg_us"].value[g], 1)] + over_zero)
@@ -201,11 +207,17 @@ def _titled(block, counts):
     return ([], title) if len(title) <= TITLE_WIDTH else ([title], "")
 
 
+def solves(file, sims):
+    of, tasks = unconverged.counts(file), sims.tasks()
+    return {"timed": int(of.timed[tasks].sum()), "missed": int(of.missed[tasks].sum())}
+
+
 def write_csv(file, sims, census, records):
-    """The first lines count the tasks."""
+    """The first lines count the tasks, and the solves to the job's tolerance."""
     counts = {"tasks": census.total, "tasks_ok": census.ok, "tasks_pending": census.pending,
               **{f"tasks_{outcome}": count for outcome, count in sorted(census.failed.items())},
-              "tasks_timed_oversubscribed": int(bool(remarks.timing_warning(file, sims.tasks())))}
+              "tasks_timed_oversubscribed": int(bool(remarks.timing_warning(file, sims.tasks()))),
+              **{f"solves_{name}": count for name, count in solves(file, sims).items()}}
     texts.write_csv(sys.stdout, blocks.COLUMNS,
                     [{"quantity": name, "value": count} for name, count in counts.items()] + records)
 
@@ -215,7 +227,7 @@ def write_json(file, sims, census, records):
                for record in records]
     whole = {"file": os.path.basename(file.path), "job": file.job().get("name"),
              "tasks": {"total": census.total, "ok": census.ok, "pending": census.pending, "failed": census.failed},
-             "conditions": remarks.conditions(file, sims.tasks()),
+             "solves": solves(file, sims), "conditions": remarks.conditions(file, sims.tasks()),
              "oversubscribed": bool(remarks.timing_warning(file, sims.tasks())), "numbers": numbers}
     json.dump(whole, sys.stdout, indent=1, ensure_ascii=False)
     print()

@@ -370,12 +370,16 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   dispatch.left += too_large.tasks;
   file.commit();
 
-  const SweepSummary summary{total,     before.done_by_outcome, dispatch,    where.workers, path, options.program,
-                             too_large, options.shard,          slow_start_s};
+  SweepSummary summary{total, before.done_by_outcome, dispatch,  where.workers,
+                       path,  options.program,        too_large, options.shard};
+  summary.slow_start_s = slow_start_s;
   const auto end = [&](ExitCode code) {
     if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
     dispatch.ranks_lost ? file.leave() : file.close();
-    by_rank_0(dispatch.ranks_lost ? std::nullopt : std::optional(mpi.world()), [&] { file.check_written(); });
+    by_rank_0(dispatch.ranks_lost ? std::nullopt : std::optional(mpi.world()), [&] {
+      file.check_written();
+      summary.solves = count_solves(path);
+    });
     for (const Dispatch::Failure& of : dispatch.warnings) console.warn(fmt::format("task {}: {}", of.task, of.message));
     console.result(summary_text(summary));
     if (dispatch.left > 0) console.note(ended_text(summary, options, mpi.size()));

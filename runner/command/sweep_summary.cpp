@@ -60,6 +60,9 @@ std::string summary_text(const SweepSummary& summary) {
   if (failed_now > static_cast<std::int64_t>(failures.size()))
     text += fmt::format("  and {} more\n", failed_now - static_cast<std::int64_t>(failures.size()));
 
+  if (const auto& [timed, missed] = summary.solves; missed > 0)
+    text += fmt::format("{} of {} missed the tolerance: their guesses have no times in these tasks\n", missed,
+                        counted(timed, "solve"));
   if (const auto now = finished_now(dispatch); now > 0 && dispatch.wall_s > 0)
     text +=
         fmt::format("{} for {}, {:.3g} tasks/s, {} busy {:.0f} % of the time\n", duration_text(dispatch.wall_s),

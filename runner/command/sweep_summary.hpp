@@ -1,5 +1,5 @@
-// The summary printed after a run: tasks by outcome, first failures, time, utilisation of workers, results file, and
-// the command to type next.
+// The summary printed after a run: tasks by outcome, first failures, solves that missed their tolerance, time,
+// utilisation of workers, results file, and the command to type next.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,7 @@
 #include "runner/command/exit_codes.hpp"
 #include "runner/command/shard.hpp"
 #include "runner/dispatch/master.hpp"
+#include "runner/file/inspect.hpp"
 
 namespace rodsweep {
 
@@ -29,6 +30,7 @@ struct SweepSummary {
   std::string program{};         ///< as the user typed it
   TooLarge too_large{};          ///< among the tasks left
   std::optional<Shard> shard{};  ///< of this start
+  SolveCounts solves{};          ///< of the whole file
   /// Seconds to plan the tasks and open the file, if they took the whole time limit.
   std::optional<double> slow_start_s{};
 };

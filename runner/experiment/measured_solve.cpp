@@ -29,6 +29,8 @@ bool is_of_the_user(const GuessSpec& guess) {
   return find_guess<guess::Plugin>(guess) || find_guess<guess::Python>(guess);
 }
 
+bool is_solved(SolveOutcome outcome) { return outcome == SolveOutcome::converged || outcome == SolveOutcome::zero_rhs; }
+
 /// A condensed system has only one norm.
 bool has_other_norm(const TaskSpec& spec) {
   return spec.output.other_norm && spec.solve.preconditioner != Preconditioner::condensed;
@@ -117,6 +119,10 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
     if (one ? static_cast<int>(g) == spec.own_guess : spec.settled.empty() || spec.settled[g] == 0)
       guesses_.push_back({g, is_zero(spec.guesses[g]), is_of_the_user(spec.guesses[g]),
                           TimedGuess(make_guess(spec.guesses[g], spec, scene))});
+  for (const Guess& guess : guesses_) {
+    record_.timing.solves_timed(0, guess.column) = 0;
+    record_.timing.solves_missed(0, guess.column) = 0;
+  }
   if (!spec.output.counts) return;
   const std::size_t tolerances = tolerance_ladder().size();
   for (const Guess& guess : guesses_) {
@@ -287,11 +293,13 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
     }
 }
 
-/// Passes the solution that advances the rod to the guesses; their time for this is counted.
+/// Passes the solution that advances the rod to the guesses, and stores the times; those of `accept` are counted.
 void MeasuredSolve::accept(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers,
                            const VectorX& solution) {
   for (std::size_t g = 0; g < guesses_.size(); ++g) {
     guesses_[g].guess.accept(system, at, solution);
+    ++record_.timing.solves_timed(0, guesses_[g].column);
+    record_.timing.solves_missed(0, guesses_[g].column) += !is_solved(solvers.guesses[g].advanced.outcome);
     if (!spec_.output.solves) continue;
     record_.timing.guess_s(row, guesses_[g].column) = static_cast<float>(guesses_[g].guess.seconds());
     record_.timing.cg_s(row, guesses_[g].column) = static_cast<float>(median(solvers.guesses[g].cg_s));

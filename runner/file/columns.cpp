@@ -227,6 +227,12 @@ std::vector<Column> all_columns() {
       column<&R::timing, &Timing::copied_guess>(
           "/timing/tasks/copied_guess", Rows::task, guess, "1",
           "1: the guess's rows and times were copied from source_task; -1: they were not"),
+      // Not times, but of the timed solves: a column in /tasks would change the checksums of all tasks.
+      column<&R::timing, &Timing::solves_timed>("/timing/tasks/solves_timed", Rows::task, guess, "1",
+                                                "timed solves of the guess; -1: it was not tried"),
+      column<&R::timing, &Timing::solves_missed>(
+          "/timing/tasks/solves_missed", Rows::task, guess, "1",
+          "timed solves that missed their tolerance; the task then has no valid times of this guess"),
       column<&R::timing, &Timing::elapsed_s>("/timing/tasks/elapsed_s", Rows::task, none, "s",
                                              "wall time of the task, without writing"),
   };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 #include "runner/file/file_lock.hpp"
 #include "runner/file/file_reading.hpp"
@@ -15,6 +16,8 @@ namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
+
+const std::string ok_name = to_string(TaskOutcome::ok);
 
 void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
   const auto run_of_task = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/run");
@@ -29,7 +32,7 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
       ++summary.runs[run].tasks;
       if (seconds.at(task) > 0) summary.runs[run].task_seconds += seconds[task];  // NaN: not measured
     }
-    if (outcome == to_string(TaskOutcome::ok)) return;
+    if (outcome == ok_name) return;
     ++summary.failed;
     summary.failures.push_back({static_cast<std::int64_t>(task), outcome, hdf5::read_text_row(messages, task)});
   });
@@ -93,6 +96,34 @@ FileSummary inspect(const fs::path& path) {
     find_begun(file, states, summary);
     find_momentum_residual(file, states, summary);
     return summary;
+  });
+}
+
+SolveCounts count_solves(const fs::path& path) {
+  return reading(path, [&] {
+    SolveCounts counts;
+    const hdf5::File file = open_results(path);
+    const hdf5::RowDataset timed(file.id(), "/timing/tasks/solves_timed"),
+        missed(file.id(), "/timing/tasks/solves_missed");
+    if (!timed || !missed || timed.row_values() == 0) return counts;
+    const std::vector<std::uint8_t> states = read_states(file, path);
+    std::vector<char> is_ok(states.size(), 0);
+    hdf5::visit_texts(file.id(), "/tasks/outcome", states.size(), [&](std::size_t task, const std::string& outcome) {
+      is_ok[task] = states[task] != 0 && outcome == ok_name;
+    });
+    constexpr std::size_t block = 4096;  // tasks read at once
+    std::vector<std::int32_t> values;
+    for (std::size_t first = 0; first < states.size(); first += block) {
+      const std::size_t tasks = std::min(block, states.size() - first);
+      for (const auto& [rows, sum] : {std::pair(&timed, &counts.timed), std::pair(&missed, &counts.missed)}) {
+        const auto guesses = static_cast<std::size_t>(rows->row_values());
+        values.resize(tasks * guesses);
+        rows->read(hdf5::type_of<std::int32_t>(), first, tasks, values.data());
+        for (std::size_t i = 0; i < values.size(); ++i)
+          if (is_ok[first + i / guesses]) *sum += std::max(values[i], 0);
+      }
+    }
+    return counts;
   });
 }
 

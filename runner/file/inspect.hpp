@@ -60,6 +60,14 @@ double silent_seconds(const std::filesystem::path& path);
 
 FileSummary inspect(const std::filesystem::path& path);
 
+/// Solves to the job's tolerance in tasks that are ok, over all guesses.
+struct SolveCounts {
+  std::int64_t timed = 0, missed = 0;
+};
+
+/// Zeros for a file that is older than these columns.
+SolveCounts count_solves(const std::filesystem::path& path);
+
 struct Verification {
   std::int64_t checked = 0;           ///< finished tasks
   std::vector<std::int64_t> damaged;  ///< tasks with a wrong checksum

@@ -60,7 +60,7 @@ class Plant:
     gap = 2e-3           # before every solve and at the end of a step, like the residual
     residual = 1e-10     # of Newton
     penetration = None   # a number: the penetration in every step of a file with contact
-    reached = staticmethod(lambda guess, tolerance, newton, segments, draw: True)
+    reached = staticmethod(lambda guess, tolerance, newton, segments, draw: True)    # to 1e-2: the timed solves too
 
 
 @dataclass
@@ -72,7 +72,7 @@ class Sweep:
     samples: int = 4
     guesses: tuple = GUESSES
     steps: int = 5
-    newton: int = 3
+    newton: int = 3    # iterations a step, the most that are allowed
     closed_loop: bool = False
     method: str = "cg"
     model: str = ""   # for end_to_end
@@ -137,6 +137,7 @@ class Sweep:
         columns.update({key: ("", [value] * len(tasks)) for key, value in text.items()})
         columns.update({"solve.tolerance": ("", [1e-2] * len(tasks)), "time.step_s": ("s", [0.02] * len(tasks))})
         columns["time.newton_iterations"] = ("", [self.newton] * len(tasks))
+        columns["time.newton_tolerance"] = ("", [1e-9] * len(tasks))
         columns.update({key: ("", [t[1][key] for t in tasks]) for key in self.grid})
         columns.update({key: (unit, [value(t[2]) for t in tasks]) for key, (unit, value) in self.random.items()})
         columns["scene.length_m"] = ("m", [1.0 + t[2] if t[0] == "bending_rod" else np.nan for t in tasks])
@@ -182,11 +183,14 @@ class Sweep:
         sums = {f"tasks/{name}{which}": np.full((1,) + shape, -1, dtype=np.int64)
                 for name in ("iterations_sum", "unreached") for which in ("", "_all")}
         counts = np.full((len(j),) + shape, -1, dtype=np.int16)
+        timed = {name: np.full((1, len(guesses)), -1, dtype=np.int32) for name in ("solves_timed", "solves_missed")}
         for g, (k, tolerance) in itertools.product(mine, enumerate(TOLERANCES)):
             by_newton = np.array([plant.zero_iterations(segments, tolerance) *
                                   plant.ratio(guesses[g], tolerance, i, segments, draw) for i in range(self.newton)])
             used = np.rint(by_newton[j] * plant.at_step(guesses[g], at)).astype(int)
             reached = np.array([plant.reached(guesses[g], tolerance, i, segments, draw) for i in range(self.newton)])[j]
+            if tolerance == 1e-2:
+                timed["solves_timed"][0, g], timed["solves_missed"][0, g] = len(j), np.count_nonzero(~reached)
             for which, counted in (("", j == 0), ("_all", j >= 0)):
                 sums[f"tasks/iterations_sum{which}"][0, g, k] = used[counted].sum()
                 sums[f"tasks/unreached{which}"][0, g, k] = (counted & ~reached).sum()
@@ -201,6 +205,7 @@ class Sweep:
                 "timing/solves/guess_s": times[0, j], "timing/solves/cg_s": times[1, j],
                 **{f"timing/solves/{name}": np.full(len(j), getattr(plant, name), dtype=np.float32)
                    for name in ("assemble_s", "direct_s")}}
+        sums.update({f"timing/tasks/{name}": values for name, values in timed.items()})
         return {**sums, **{name: values if with_rows else values[:0] for name, values in rows.items()}}
 
 

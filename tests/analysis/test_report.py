@@ -143,6 +143,10 @@ class Honesty(Report):
     def test_what_is_unfinished_failed_unsound_or_of_no_use_is_said(self):
         useless = synthetic.Plant()
         useless.quality = {"zero": 1.0, "previous": 1.5}
+        missing, none_reached, large = synthetic.Plant(), synthetic.Plant(), synthetic.Plant()
+        missing.reached = lambda guess, *_: guess != "quadratic"
+        none_reached.reached = lambda *_: False
+        large.residual = 1e-4
         for settings, words, *absent in (
                 ({}, [], "Half finished"),
                 ({"pending": (1, 2)}, ["Half finished. 2 of 24 tasks"]),
@@ -150,6 +154,13 @@ class Honesty(Report):
                 ({"failed": {0: "diverged", 5: "timed_out"}},
                  ["2 tasks, which are left out", "task 0: diverged – planted", "task 5: timed_out – planted"]),
                 ({"oversubscribed": True}, ["more MPI ranks than cores", "Nothing is said about the clock"], "fastest"),
+                ({"plant": missing},
+                 ["Not all solves converged. 144 of 576 solves missed the tolerance (quadratic 144)",
+                  "left with previous", "the fewest of 1 guess.", "speed of CG from zero with previous"],
+                 "left with quadratic", "zero with quadratic"),
+                ({"plant": none_reached}, ["Not all solves converged. 576 of 576", "No guess reached 1e-2"], "×", "nan"),
+                ({"plant": large},
+                 ["Not all steps converged. 24 of 24 tasks", "task 0 (0.0001 in step 0)", "and 19 more"]),
                 ({"plant": useless, "guesses": ("zero", "previous")}, ["no guess saves any", "no guess wins time"]),
                 ({"guesses": ("previous", "quadratic")}, ["no zero guess"])):
             with self.subTest(words=words):

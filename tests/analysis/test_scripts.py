@@ -128,6 +128,37 @@ class Summary(Scripts):
         self.assertEqual(quadratic[:2], ["quadratic", "1.25"])
         self.assertEqual([float(value) for value in quadratic[2:4]], [0.68, 1.68])   # (1 + 2 * .9) / 3 of all, plus 1
 
+    def test_a_guess_has_no_times_in_simulations_where_a_solve_missed_the_tolerance(self):
+        plant = synthetic.Plant()
+        plant.reached = lambda guess, tolerance, newton, segments, draw: (guess != "quadratic" or draw > 0 or
+                                                                          tolerance > 1e-2)
+        self.write(scenes=("helix",), plant=plant, samples=6)
+        said = self.summary()
+        self.assertIn("WARNING: 18 of 432 solves missed the tolerance (quadratic 18). A simulation has no times", said)
+        numbers = json.loads(self.summary("--json"))
+        self.assertEqual(numbers["solves"], {"timed": 432, "missed": 18})
+        of = {(n["quantity"], n["guess"]): n["simulations"] for n in numbers["numbers"]}
+        for quantity in ("speedup_cg", "speedup_guess_cg", "speedup_step", "speedup_over_direct_cg", "cg_us"):
+            self.assertEqual([of[quantity, guess] for guess in ("previous", "quadratic")], [18, 15], quantity)
+
+    def test_where_cg_from_zero_missed_the_tolerance_there_is_no_speedup(self):
+        plant = synthetic.Plant()
+        plant.reached = lambda guess, tolerance, newton, segments, draw: guess != "zero"
+        self.write(scenes=("helix",), plant=plant)
+        lines = self.summary().splitlines()
+        begin = next(k for k, line in enumerate(lines) if line.startswith("Helix") and "solve µs" in line)
+        self.assertEqual([line.split()[2:] for line in lines[begin + 1:begin + 3]],
+                         [["-", "-", "-", "-"], ["10.0", "-", "-", "-"]])
+
+    def test_tasks_whose_steps_end_far_from_the_newton_tolerance_are_named(self):
+        self.write(scenes=("helix",))
+        self.assertNotIn("Newton residual over", self.summary())
+        with h5py.File("sweep.h5", "a") as h5:
+            for row, residual in ((2 * 7, 0.024), (2 * 2 + 1, 1.1e-5), (2 * 1, 0.9e-5)):    # two steps a task
+                h5["steps/newton_residual"][row] = residual
+        self.assertIn("WARNING: 2 of 12 tasks have steps that end with a Newton residual over 10,000 times "
+                      "newton_tolerance: task 7 (0.024 in step 0), task 2 (1.1e-05 in step 1). More", self.summary())
+
     def test_csv_and_json_hold_the_same_numbers(self):
         self.write(failed={3: "diverged"}, samples=5)
         rows = list(csv.DictReader(io.StringIO(self.summary("--csv"))))
@@ -136,7 +167,7 @@ class Summary(Scripts):
         self.assertEqual(counts, {"tasks": 30, "tasks_ok": 29, "tasks_pending": 0, "tasks_diverged": 1,
                                   "tasks_timed_oversubscribed": 0})
         self.assertEqual(whole["tasks"], {"total": 30, "ok": 29, "pending": 0, "failed": {"diverged": 1}})
-        numbers = [row for row in rows if not row["quantity"].startswith("tasks")]
+        numbers = [row for row in rows if not row["quantity"].startswith(("tasks", "solves_"))]
         self.assertEqual([row["quantity"] for row in numbers], [n["quantity"] for n in whole["numbers"]])
         for row, number in zip(numbers, whole["numbers"]):
             self.assertEqual(float(row["value"] or "nan"), number["value"])

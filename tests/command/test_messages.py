@@ -142,6 +142,17 @@ class Planned(Case):
         self.assertTrue(os.path.isfile(script))
 
 
+class Unconverged(Case):
+    def test_the_end_of_a_run_counts_the_solves_of_the_whole_file_that_missed_the_tolerance(self):
+        solve = {"preconditioner": "none", "max_iterations": 2}
+        job = write_job("short", samples=1, guesses=["zero", "previous"], solve=solve)
+        first = self.said("run", job)
+        self.assertRegex(first, r"\n(\d+) of \1 solves missed the tolerance: their guesses have no times")
+        again = self.said("run", job, "--resume")
+        self.assertIn(re.search(r"\n.*missed.*\n", first)[0], again)
+        self.assertNotIn("missed", self.said("run", write_job("enough", samples=1)))
+
+
 class Validate(Case):
     """For missing files and JSON see tests/runner/job/test_input_files.cpp and test_job_refusals.cpp."""
 

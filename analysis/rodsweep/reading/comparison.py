@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import h5py
 import numpy as np
 
-from rodsweep.reading import intervals
+from rodsweep.reading import intervals, unconverged
 from rodsweep.reading.hdf5 import decoded
 
 BY = ("everything", "parameters")
@@ -210,8 +210,8 @@ class Comparison:
         for g, label in enumerate(self.one.guesses):
             places = self.guesses[ok][:, g] if len(a) else np.empty(0, dtype=int)
             if (places >= 0).any():
-                columns.append((f"guess and CG, {label}", self._of_solves(self.one, a, ["guess_s", "cg_s"], g),
-                                self._of_solves(self.other, b, ["guess_s", "cg_s"], int(places.max()))))
+                columns.append((f"guess and CG, {label}", self._of_guess(self.one, a, g),
+                                self._of_guess(self.other, b, int(places.max()))))
         for what, here, there in columns:
             with np.errstate(invalid="ignore"):
                 both = (here > 0) & (there > 0)
@@ -233,6 +233,11 @@ class Comparison:
     @staticmethod
     def _per_task(file, path, tasks):
         return file.h5[path][:][tasks].astype(float) if file.has(path) else np.full(len(tasks), np.nan)
+
+    def _of_guess(self, file, tasks, guess):
+        """Without tasks in which a solve missed the tolerance."""
+        found = self._of_solves(file, tasks, ["guess_s", "cg_s"], guess)
+        return np.where(unconverged.counts(file).missed[tasks, guess] > 0, np.nan, found)
 
     @staticmethod
     def _of_solves(file, tasks, names, guess=None):

@@ -11,6 +11,7 @@ If they are fewer than FEW, the median of an earlier iteration or of all rows is
 compared among themselves, and only if there are FEW: CG without an iteration, and parts that renewed a lagged
 preconditioner or factor (/solves/renewed). Interruptions strike all parts: one that is long BY_DESIGN times as often as
 the median part is not interrupted but slow by design, such as searches of nearest neighbours, and counts as it is.
+CG has no time in a simulation where a solve missed the tolerance (unconverged.py).
 Times.interrupted counts the rows left out. If they are at least FEW and interruptions took over SUSPICIOUS of the time,
 interruptions() warns; each counts LONGEST_S at most, since a program that is suspended is no busy machine.
 """
@@ -19,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rodsweep.reading import unconverged
 from rodsweep.reading.measures import quotient
 
 COLUMNS = ("/timing/solves/assemble_s", "/timing/solves/direct_s", "/timing/solves/guess_s", "/timing/solves/cg_s")
@@ -39,7 +41,7 @@ class Times:
     """Seconds summed over a simulation, [simulation, guess], over the solves that were timed for the guess.
 
     zero_* are the zero guess's times on the same solves (closed loop: in its own task); direct_s is NaN unless it was
-    timed on all of them. rest_s belongs to all Newton iterations.
+    timed on all of them. cg_s is NaN if a solve missed the tolerance. rest_s belongs to all Newton iterations.
     """
     solves: np.ndarray
     interrupted: np.ndarray
@@ -106,10 +108,11 @@ def times(file, sims):
                 np.add.at(sums[which][name], owners, np.add.reduceat(values.astype(float), starts, axis=0))
     rest = np.broadcast_to(_rest_s(file, tasks)[:, None], (file.task_count, guesses))
     first, every = _scale(sums["first"]), _scale(sums["later"])  # in place: these arrays are most of the memory
-    found = {"first": _gathered(sims, zero, first, rest)}
+    missed = unconverged.counts(file).missed
+    found = {"first": _gathered(sims, zero, first, rest, missed)}
     for name in list(first):
         every[name] += first.pop(name)
-    return {**found, "all": _gathered(sims, zero, every, rest)}
+    return {**found, "all": _gathered(sims, zero, every, rest, missed)}
 
 
 def timed_rung(file):
@@ -166,12 +169,15 @@ def _scale(sums):
     return sums
 
 
-def _gathered(sims, zero, sums, rest):
-    """Sums of tasks by simulation and guess; NaN without solves."""
+def _gathered(sims, zero, sums, rest, missed):
+    """Sums of tasks by simulation and guess; NaN without solves, and of CG where a solve missed the tolerance."""
     solves = sims.gather(sums["solves"])
 
     def of(name, guess=None):
         return np.where(sims.gather(sums["solves"], guess) > 0, sims.gather(sums[name], guess), np.nan)
+
+    def reached(cg_s, guess=None):
+        return np.where(sims.gather(missed, guess) > 0, np.nan, cg_s)
 
     if zero is None:
         zero_assemble = zero_guess = zero_cg = zero_rest = np.full(sims.task.shape, np.nan)
@@ -179,11 +185,11 @@ def _gathered(sims, zero, sums, rest):
         own = sims.own[:, None]
         zero_assemble = np.where(own, of("assemble_s", zero), of("assemble_s"))
         zero_guess = np.where(own, of("guess_s", zero), of("zero_guess_s"))
-        zero_cg = np.where(own, of("cg_s", zero), of("zero_cg_s"))
+        zero_cg = reached(np.where(own, of("cg_s", zero), of("zero_cg_s")), zero)
         zero_rest = np.where(own, sims.gather(rest, zero), sims.gather(rest))
     lost_s, kept_s = sims.gather(sums["lost_s"]), sims.gather(sums["kept_s"])
-    return Times(solves, solves - sims.gather(sums["kept"]), lost_s, kept_s, of("assemble_s"), of("guess_s"), of("cg_s"),
-                 of("direct_s"), sims.gather(rest), zero_assemble, zero_guess, zero_cg, zero_rest)
+    return Times(solves, solves - sims.gather(sums["kept"]), lost_s, kept_s, of("assemble_s"), of("guess_s"),
+                 reached(of("cg_s")), of("direct_s"), sims.gather(rest), zero_assemble, zero_guess, zero_cg, zero_rest)
 
 
 def _rest_s(file, tasks):

@@ -20,7 +20,8 @@ class Row:
     """A guess or the direct solve. Keys: ratio and all (of iterations), guess_us and cg_us, the SPEEDUPS over CG from
     zero, and those over the direct solve with over_direct_ before the name."""
     label: str
-    wins: bool         # whether it can be the best
+    wins: bool         # whether it can be the best: not the oracle
+    reached: bool      # whether all its solves reached the tolerance; only then it can have the fewest iterations
     texts: dict        # as summary.py writes them
     sort: dict         # the numbers of the texts, NaN where there is none
     estimates: dict    # of those that have an interval
@@ -46,7 +47,7 @@ class Answer:
 
     @property
     def rivals(self):
-        return sum(row.wins for row in self.rows)
+        return sum(row.wins and row.reached for row in self.rows)
 
     def sorted(self):
         """By iterations; the direct solve, which has none, comes last."""
@@ -100,9 +101,10 @@ def _answer(file, block, guesses, t):
     rows = [_row(file, block, g, t) for g in guesses]
     direct = _direct(file, block)
     missed = any(block.unreached[g, t] for g in {*guesses, file.zero})
+    fewest = _best([row for row in rows if row.reached], "ratio", min)
     return Answer(block, block.title, texts.range_text(block.ratio.count[guesses]), missed,
-                  rows + ([direct] if direct else []), _best(rows, "ratio", min), _best(rows, "guess_cg", max),
-                  _best(rows, "step", max), direct)
+                  rows + ([direct] if direct else []), fewest, _best(rows, "guess_cg", max), _best(rows, "step", max),
+                  direct)
 
 
 def _best(rows, name, better):
@@ -123,7 +125,8 @@ def _row(file, block, g, t):
     if "all" in shown:
         shown["all"] = texts.fixed_text(sort["all"], 2)
     if zero:    # the reference of all others
-        shown.update({name: "1" for name in ("ratio", "all", *timings.SPEEDUPS) if name in shown})
+        shown.update({name: "1" for name in ("ratio", "all", *timings.SPEEDUPS)
+                      if math.isfinite(sort.get(name, math.nan))})
     elif block.unreached[g, t] or block.unreached[file.zero, t]:
         shown["ratio"] += "*"
     parts = {}
@@ -131,8 +134,9 @@ def _row(file, block, g, t):
         us = {name: float(block.times[name].value[g]) for name in blocks.TIMES}
         sort.update({"guess_us": us["guess_us"], "cg_us": us["cg_us"]})
         shown.update({"guess_us": texts.fixed_text(us["guess_us"], 2), "cg_us": texts.fixed_text(us["cg_us"], 1)})
-        parts = {"assemble": us["assemble_us"], "guess": us["guess_us"], "cg": us["cg_us"]}
-    return Row(label, not zero and "oracle" not in label, shown, sort, estimates, parts)
+        if math.isfinite(us["cg_us"]):
+            parts = {"assemble": us["assemble_us"], "guess": us["guess_us"], "cg": us["cg_us"]}
+    return Row(label, not zero and "oracle" not in label, not block.unreached[g, t], shown, sort, estimates, parts)
 
 
 def _direct(file, block):
@@ -141,7 +145,7 @@ def _direct(file, block):
     us = {name: float(block.times[name].value[file.zero]) for name in blocks.TIMES}
     shown = {name: texts.interval_text(estimate) for name, estimate in block.direct_speedup.items()}
     sort = {name: float(estimate.value) for name, estimate in block.direct_speedup.items()}
-    return Row("direct", False, {**shown, "cg_us": texts.fixed_text(us["direct_us"], 1)},
+    return Row("direct", False, True, {**shown, "cg_us": texts.fixed_text(us["direct_us"], 1)},
                {**sort, "cg_us": us["direct_us"]}, dict(block.direct_speedup),
                {"assemble": us["assemble_us"], "direct": us["direct_us"]})
 

@@ -4,7 +4,7 @@ import json
 import os
 from dataclasses import dataclass, field
 
-from rodsweep.reading import blocks, commandline, measures, remarks, texts
+from rodsweep.reading import blocks, commandline, measures, remarks, texts, unconverged
 from rodsweep.report import animation, answers, axes, families, lines
 
 STEP_TITLES = {"newton_iterations": "Newton iterations a step", "newton_residual": "Newton residual",
@@ -31,6 +31,8 @@ class Sweep:
     conditions: dict = field(default_factory=dict)
     warning: str = ""
     notes: list = field(default_factory=list)
+    missed: str = ""             # timed solves that missed the tolerance
+    large_residuals: str = ""    # of Newton
     tolerance: str = ""          # of the iterations in the answers
     timed_tolerance: str = ""
     answers: list = field(default_factory=list)
@@ -80,7 +82,8 @@ def _found(file, options, sims, guesses, tolerances, budget, data):
     data.update(families=[family for family in shown if family["axes"]], warning=warning,
                 tolerance=0 if headline is None else tolerances.index(headline))
     return {"conditions": remarks.conditions(file, tasks), "warning": warning,
-            "notes": answers.notes(file, sims, guesses),
+            "notes": answers.notes(file, sims, guesses), "missed": unconverged.missed_text(file, tasks),
+            "large_residuals": unconverged.newton_text(file, tasks),
             "tolerance": "" if headline is None else texts.tolerance_label(file.tolerances[headline]),
             "timed_tolerance": remarks.solve_tolerance(file, tasks),
             "answers": answers.answers(file, measured, guesses, headline),

@@ -45,6 +45,21 @@ TEST_CASE("a solve that misses a tolerance counts the iterations that it spent, 
   CHECK(evaluated(five_steps(R"(["zero"])")).tasks.counted_all.unreached.back() == 0);
 }
 
+TEST_CASE("timed solves that miss the job's tolerance are counted, also where no iterations are") {
+  const auto missed = [](double tolerance, const char* norms) {
+    Json job = five_steps(R"(["zero", "previous"])", R"({"preconditioner": "none", "max_iterations": 2})");
+    job["solve"]["tolerance"] = tolerance;
+    job["record"]["norms"] = norms;
+    const TaskRecord r = evaluated(job);
+    CHECK(r.timing.solves_timed[0] > 5);
+    CHECK(r.timing.solves_timed[0] == r.timing.solves_timed[1]);
+    return r.timing.solves_missed[0];
+  };
+  CHECK(missed(1e-8, "none") > 5);
+  CHECK(missed(1e-8, "one") == missed(1e-8, "none"));
+  CHECK(missed(1, "none") == 0);
+}
+
 TEST_CASE("a step's effort is that of the solves that advanced it, also if nothing is counted") {
   Json job = five_steps(R"(["zero", "previous"])");
   job["evaluation"] = "closed_loop";

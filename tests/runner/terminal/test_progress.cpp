@@ -12,6 +12,7 @@ using namespace rodsweep;
 
 namespace test_progress {
 
+using Catch::Matchers::Contains;
 using Catch::Matchers::EndsWith;
 using Catch::Matchers::StartsWith;
 using std::chrono::seconds;
@@ -78,6 +79,15 @@ TEST_CASE("the summary names outcomes, first failures, use of workers, file and 
         "10.0 s for 13 tasks, 1.3 tasks/s, 2 workers busy 75 % of the time\n"
         "results: results/a b.h5\n"
         "next: /usr/bin/python3 analysis/summary.py 'results/a b.h5'");
+}
+
+TEST_CASE("the summary counts solves that missed their tolerance") {
+  SweepSummary summary{15, {}, dispatch_of(6, 0, 9), 2, "x.h5"};
+  summary.solves = {1040, 0};
+  CHECK_THAT(summary_text(summary), !Contains("missed"));
+  summary.solves.missed = 29;
+  CHECK_THAT(summary_text(summary),
+             Contains("\n29 of 1040 solves missed the tolerance: their guesses have no times in these tasks\n"));
 }
 
 TEST_CASE("the summary of a sweep stopped early says what is left") {
