@@ -9,7 +9,8 @@ Writes into a folder:
   README.md        what is in it
   SHA256SUMS       checksums of all files
 
-Files that are there are kept, so a stopped run goes on. `make benchmark-data` runs the job first.
+Files that are there are kept, so a stopped run goes on. All tasks of the job must be done; `make benchmark-data` runs
+it first. The card names failed tasks.
 """
 
 import argparse
@@ -20,7 +21,8 @@ import os
 
 import numpy as np
 from rodsweep import program
-from rodsweep.reading import commandline
+from rodsweep.reading import commandline, measures, remarks
+from rodsweep.reading.errors import SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.reading.systems import Systems
 from rodsweep.writing import outputs
@@ -30,8 +32,9 @@ EXAMPLES = """examples:
   analysis/benchmark_data.py results/benchmark.h5 -o benchmark"""
 PRECONDITIONER, TUNING = "solve.preconditioner", 2      # samples for tuning
 CARD = """# Linear systems of Cosserat rods
-{systems} systems A x = b of {simulations} simulations: bending rods, helices, trees, nets and lattices, steps of 0.02 s, the
-first Newton iteration of each. Made by `make benchmark-data` of rodsweep ({revision}), jobs/benchmark.json. MIT licence.
+{systems} systems A x = b of {simulations} simulations: {scenes}, steps of {step_s} s, the
+first Newton iteration of each. Made by `make benchmark-data` of rodsweep ({revision}), jobs/benchmark.json. MIT
+licence.{failed}
 
 - `SCENE-JOINTS-tuning-K.h5` to choose settings and to train on, `SCENE-JOINTS-test-K.h5` to report.
 - `rodsweep.systems(FILE)` in Python has A as a scipy matrix of 6x6 blocks, b, the solution x, the poses and constants of
@@ -77,12 +80,15 @@ def checksum(path):
 
 def main():
     options = arguments()
-    os.makedirs(options.output, exist_ok=True)
     with SweepFile(options.file) as file:
-        names, revision = stems(file), file.runs()[-1]["revision"]
-        first = file.parameter(PRECONDITIONER).values == "jacobi"
-        tasks = {names[task]: int(task) for task in np.flatnonzero(first & file.ok)}
-        rows = reference(file, names)
+        if not file.complete.all():
+            counts = measures.census(file, np.ones(file.task_count, dtype=bool)).text()
+            raise SweepFileError(f"{file.path} is not finished ({counts}): continue its run with --resume")
+        names, tasks = stems(file), {}
+        for task in np.flatnonzero(file.ok):    # all preconditioners solve the same systems
+            tasks.setdefault(names[task], int(task))
+        rows, said = reference(file, names), about(file, names, tasks)
+    os.makedirs(options.output, exist_ok=True)
     for name, task in tasks.items():
         path = os.path.join(options.output, f"{name}.h5")
         if not os.path.exists(path):
@@ -91,13 +97,23 @@ def main():
     table = io.StringIO()
     csv.writer(table, lineterminator="\n").writerows(rows)
     outputs.write(os.path.join(options.output, "reference.csv"), table.getvalue())
-    outputs.write(os.path.join(options.output, "README.md"), card(options.output, tasks, revision))
+    outputs.write(os.path.join(options.output, "README.md"), card(options.output, tasks, said))
     sums = "".join(f"{checksum(os.path.join(options.output, name))}  {name}\n"
                    for name in sorted(os.listdir(options.output)) if name != "SHA256SUMS")
     outputs.write(os.path.join(options.output, "SHA256SUMS"), sums)
 
 
-def card(folder, tasks, revision):
+def about(file, names, tasks):
+    """What CARD says of a results file, by field."""
+    scenes = dict.fromkeys(str(file.scene_types()[task]).replace("_", " ") for task in tasks.values())
+    failed = [f"{names[task]} with {file.parameter(PRECONDITIONER).text(task)} ({file.outcome[task]})"
+              for task in np.flatnonzero(~file.ok)]
+    left_out = f" {len(failed)} of {len(names)} tasks failed and are left out: {', '.join(failed)}." if failed else ""
+    return {"scenes": ", ".join(scenes), "revision": file.runs()[-1]["revision"], "failed": left_out,
+            "step_s": remarks.conditions(file, list(tasks.values()))["step_s"]}
+
+
+def card(folder, tasks, said):
     counts = {}
     for name in tasks:
         with Systems(os.path.join(folder, f"{name}.h5")) as systems:
@@ -105,8 +121,8 @@ def card(folder, tasks, revision):
             of[0], of[1] = of[0] + 1, of[1] + len(systems)
     rows = ["| scene and joints | files | systems |", "|---|---|---|"]
     rows += [f"| {name} | {files} | {systems} |" for name, (files, systems) in counts.items()]
-    return CARD.format(systems=sum(of[1] for of in counts.values()), simulations=len(tasks), revision=revision,
-                       rows="\n".join(rows))
+    return CARD.format(systems=sum(of[1] for of in counts.values()), simulations=len(tasks), rows="\n".join(rows),
+                       **said)
 
 
 if __name__ == "__main__":

@@ -148,6 +148,24 @@ class Exported(InAFolder):
             self.assertIn("33 systems A x = b of 3 simulations", card.read())
         self.assertEqual(run("benchmark_data.py", file, "-o", "data").code, 0)    # goes on
 
+    def test_benchmark_data_of_an_unfinished_run_are_refused_and_failed_tasks_are_named(self):
+        file = self.swept(solve={"preconditioner": {"grid": ["jacobi", "block_icc"]}})
+        with h5py.File(file, "a") as results:
+            results["/tasks/state"][1] = 0
+        done = run("benchmark_data.py", file, "-o", "data")
+        self.assertEqual(done.code, 2)
+        self.assertIn("s.h5 is not finished (3 of 4 tasks ok, none failed, 1 pending): continue", done.stderr)
+        self.assertFalse(os.path.exists("data"))
+        with h5py.File(file, "a") as results:
+            results["/tasks/state"][1] = 1
+            results["/tasks/outcome"][0] = b"diverged"
+        done = run("benchmark_data.py", file, "-o", "data")
+        self.assertEqual(done.code, 0, done.stderr)
+        with open("data/README.md", encoding="utf-8") as card:
+            said = card.read()
+        self.assertIn("22 systems A x = b of 2 simulations: bending rod, steps of 0.02 s", said)
+        self.assertIn("1 of 4 tasks failed and are left out: bending_rod-8-tuning-0 with jacobi (diverged).", said)
+
     def test_what_is_no_system_is_refused(self):
         file = self.swept()
         self.assertIn("must be from 0 to 1", self.program("systems", file, "2", code=2).stderr)
