@@ -17,8 +17,9 @@ struct StatusOptions {
 
 inline constexpr const char* status_help =
     "Only reads the file, also during a run. The exit code is 0 in every state: scripts can read --json. A running\n"
-    "sweep locks the file. Without file locks, it counts as running while it updates the time of the file (every 5\n"
-    "seconds). The remaining time assumes that tasks take as long as those so far, but long tasks run first.\n\n"
+    "sweep locks the file. Without file locks, it counts as running while it updates the time of the file. The\n"
+    "remaining time is the run's own estimate, from the cost of the tasks that are left and the pace of the last "
+    "ones.\n\n"
     "Examples:\n"
     "  rodsweep status results/demo.h5 --json | jq .pending\n"
     "  rodsweep status results/demo.h5 --watch           a line every 5 seconds until it ends";

@@ -184,6 +184,24 @@ class Environment(unittest.TestCase):
 
 
 class Jobs(unittest.TestCase):
+    NO_KEYS = {"span", "points", "radius", "from_stretch"}    # a wrong key, keys of files of curves, a word
+
+    def test_keys_in_texts_and_in_the_plugins_header_exist(self):
+        names, header = set(), os.path.join("solver", "plugin", "plugin.h")
+
+        def walk(node):
+            if isinstance(node, (dict, list)):
+                names.update(node.get("properties", ()) if isinstance(node, dict) else ())
+                for child in node.values() if isinstance(node, dict) else node:
+                    walk(child)
+
+        walk(json.loads(keys.read(keys.SCHEMA)))
+        for page in (*links.pages(ROOT), header):
+            text = re.sub(r"^```.*?^```", "", keys.read(os.path.join(ROOT, page)), flags=re.S | re.M)
+            said = set(re.findall(r'"(\w+)":', text))
+            self.assertEqual(said - names - self.NO_KEYS, set(), page)
+            self.assertTrue(page != header or said)
+
     def test_jobs_in_the_pages_are_sound(self):
         validator, found = jsonschema.Draft7Validator(json.loads(keys.read(keys.SCHEMA))), 0
         for page in links.pages(ROOT):
