@@ -113,7 +113,7 @@ def _messages(terminal, show):
         if STATUS.match(rest):
             show(rest.removeprefix(CLEAR))
         said += [piece.removeprefix(CLEAR) for piece in ended if not STATUS.match(piece)]
-    return "\n".join((*said, rest))
+    return "\n".join((*said, rest.removeprefix(CLEAR)))
 
 
 def _read(terminal):

@@ -15,8 +15,10 @@ PluginSource plugin_source(const PythonFile& file, PythonClass kind) {
     throw PluginError(
         name + ": this program was built without Python; install pybind11-dev and python3-dev, and build it again");
   const char* word = kind == PythonClass::guess ? "Guess" : "Preconditioner";
-  return {library, std::string(word) + '\n' + std::filesystem::absolute(file.file).native() + '\n' + file.options,
-          name};
+  std::string options = std::string(word) + '\n' + std::filesystem::absolute(file.file).native() + '\n';
+  options += std::to_string(file.inputs.size()) + '\n';
+  for (const std::filesystem::path& input : file.inputs) options += std::filesystem::absolute(input).native() + '\n';
+  return {library, options + file.options, name};
 }
 
 }  // namespace rodsweep

@@ -92,10 +92,14 @@ bool same(double a, double b) {
 /// Checked first, because all other checks may depend on the job's input files.
 void check_hash(const hdf5::File& file, const fs::path& path, const Plan& plan,
                 const std::vector<ParameterColumn>& parameters, const char* advice) {
-  if (hdf5::read_text_attribute(file.id(), "/job", "plan_hash") != plan_hash(plan, parameters)) {
-    throw other_program(file, path, "its tasks differ, or input files of the job have changed (/job, plan_hash)",
-                        advice);
+  if (hdf5::read_text_attribute(file.id(), "/job", "plan_hash") == plan_hash(plan, parameters)) return;
+  std::string difference = "its tasks differ (/job, plan_hash)";
+  if (const InputFiles& inputs = plan.job().files; !inputs.empty()) {
+    std::vector<std::string> names;
+    for (const auto& [written, input] : inputs) names.push_back(written);
+    difference += fmt::format(", or input files of the job have changed: {}", fmt::join(names, ", "));
   }
+  throw other_program(file, path, difference, advice);
 }
 
 void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& plan,

@@ -67,6 +67,10 @@ inline void read_value(const Place& at, std::uint64_t& value) { value = static_c
 inline void read_value(const Place& at, Vector3& value) { value = Vector3::Map(at.value().number); }
 inline void read_value(const Place& at, std::string& value) { value = at.text(); }
 inline void read_value(const Place& at, std::filesystem::path& file) { file = at.job().files.at(at.text()).path; }
+inline void read_value(const Place& list, std::vector<std::filesystem::path>& files) {
+  files.clear();
+  for (std::size_t i = 0; list.item(i).is_given(); ++i) read_value(list.item(i), files.emplace_back());
+}
 inline void read_value(const Place& at, std::optional<double>& value) {
   value.reset();
   if (!at.value().is_text()) value = at.number();
@@ -87,6 +91,10 @@ nlohmann::ordered_json written(const Key& key, const std::optional<Value>& value
   if (!value) return key.choices.front();
   if (key.kind != Key::Kind::object) throw std::logic_error(key.name + " has a default that is neither a word nor {}");
   return nlohmann::ordered_json::object();  // all defaults
+}
+template <class Item>
+nlohmann::ordered_json written(const Key&, const std::vector<Item>&) {
+  return nlohmann::ordered_json::array();  // default: none
 }
 
 /// The alternatives of an Owner.

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace rodsweep {
 
@@ -15,6 +16,7 @@ struct PluginFile {
 struct PythonFile {
   std::filesystem::path file;
   std::string options;
+  std::vector<std::filesystem::path> inputs{};  ///< other files that it reads
 };
 
 }  // namespace rodsweep

@@ -6,6 +6,16 @@
 
 namespace rodsweep {
 
+/// Files that the user's code reads.
+inline Key inputs_key() {
+  return list_key("inputs",
+                  "other files whose contents its results depend on, such as weights: a sweep is not continued with "
+                  "changed ones",
+                  file_key("inputs", FileKind::any, "a file"))
+      .defaults_to(nlohmann::ordered_json::array())
+      .unlabelled();
+}
+
 template <class Owner>
 KeyTable<Owner> plugin_keys() {
   KeyTable<Owner> table;
@@ -13,6 +23,7 @@ KeyTable<Owner> plugin_keys() {
       file_key("library", FileKind::plugin, "shared library that exports rodsweep_plugin() (docs/extending.md)"),
       &Owner::library);
   table.optional(text_key("options", "text that the library receives").at_most(1000), &Owner::options);
+  table.unbound(inputs_key());
   return table;
 }
 
@@ -22,6 +33,7 @@ KeyTable<Owner> python_keys(FileKind kind) {
   table.required(file_key("file", kind, "Python file with a class Guess or Preconditioner (docs/own-guess.md)"),
                  &Owner::file);
   table.optional(text_key("options", "text that the class receives").at_most(1000), &Owner::options);
+  table.optional(inputs_key(), &Owner::inputs);
   return table;
 }
 

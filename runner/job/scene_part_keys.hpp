@@ -31,9 +31,4 @@ void read_value(const Place& list, std::vector<PrescribedMotion>& motions);
 void read_value(const Place& list, std::vector<GravityChange>& changes);
 void read_value(const Place& list, std::vector<Vector3>& points);
 
-template <class Item>
-nlohmann::ordered_json written(const Key&, const std::vector<Item>&) {
-  return nlohmann::ordered_json::array();  // default: none
-}
-
 }  // namespace rodsweep

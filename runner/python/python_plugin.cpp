@@ -1,9 +1,9 @@
 // Guesses and preconditioners in Python (docs/own-guess.md): a plug-in (solver/plugin/plugin.h) that embeds the
 // interpreter, so that the program itself does not need Python.
 //
-// Its options are three parts, each on a line but the last: the class, Guess or Preconditioner; the file that has it;
-// the text of the job. Python receives copies, since it may keep them longer than their memory exists. The arrays have
-// the names and shapes of rodsweep.systems().
+// Its options are parts, each on a line but the last: the class, Guess or Preconditioner; the file that has it; the
+// number of other files that it reads, and their paths; the text of the job. Python receives copies, since it may keep
+// them longer than their memory exists. The arrays have the names and shapes of rodsweep.systems().
 #include <dlfcn.h>
 #include <omp.h>
 #include <pthread.h>
@@ -26,6 +26,8 @@
 #include <utility>
 #include <vector>
 
+#include "runner/python/opened_files.hpp"
+#include "runner/python/surroundings.hpp"
 #include "solver/plugin/plugin.h"
 
 namespace py = pybind11;
@@ -179,8 +181,10 @@ void start_python() {
   config.write_bytecode = 0;           // nothing beside the user's files
   // sys.executable, which multiprocessing starts: not the first python3 of the PATH, which may be of another version.
   const char* environment = std::getenv("VIRTUAL_ENV");
+  if (environment) rodsweep::check_environment(environment);
   const std::string python = environment ? std::string(environment) + "/bin/python" : RODSWEEP_PYTHON;
   PyConfig_SetBytesString(&config, &config.program_name, python.c_str());
+  rodsweep::watch_opened_files();
   Visit::begin();
   py::initialize_interpreter(&config, 0, nullptr, false);
   py::module_::import("rodsweep_system");
@@ -272,20 +276,38 @@ int count_of(const py::object& products) {
 struct Instance {
   py::object own;
   std::string folder;  ///< see Visit
+  std::string file;
+  std::vector<std::string> inputs;  ///< of the job
+  std::size_t told = 0;             ///< opened_files() at the last warning
   std::vector<py::object> rods;
   int joints = 0;  ///< of the preconditioner's rod
 
   /// Calls a method with a system that lasts as long as the call.
   template <class... More>
   py::object call(const char* method, const rodsweep_system& system, const More&... more) {
-    const Visit visit(folder);
     const std::size_t rod = rods.size() == 1 ? 0 : static_cast<std::size_t>(system.rod);
     py::object made = py::cast(System(system, rods[rod]));
     struct Ended {
       System& system;
       ~Ended() { system.end(); }
     } ended{made.cast<System&>()};
-    return own.attr(method)(made, more...);
+    return within([&] { return own.attr(method)(made, more...); });
+  }
+
+  /// What a call into the user's code returns. Tells the user of files that it opened.
+  template <class Call>
+  py::object within(const Call& call) {
+    py::object returned;
+    {
+      const Visit visit(folder);
+      const rodsweep::Watching watching(file);
+      returned = call();
+    }
+    if (const std::size_t opened = rodsweep::opened_files(); opened != told) {
+      told = opened;
+      rodsweep::warn_of_unnamed(file, inputs);
+    }
+    return returned;
   }
 };
 
@@ -310,6 +332,7 @@ const Loaded& loaded(const std::string& path) {
   py::module_::import("sys").attr("modules")[name.c_str()] = made.module;
   {
     const Visit visit(made.folder);
+    const rodsweep::Watching watching(path);
     spec.attr("loader").attr("exec_module")(made.module);
   }
   return files.emplace(path, std::move(made)).first->second;
@@ -317,9 +340,16 @@ const Loaded& loaded(const std::string& path) {
 
 /// Without rods: loads the file and checks it.
 void* create(const char* options, const rodsweep_rod* rods, int count, char* error) {
-  const std::string all = options;
-  const std::size_t first = all.find('\n'), second = all.find('\n', first + 1);
-  const std::string name = all.substr(0, first), path = all.substr(first + 1, second - first - 1);
+  std::string text = options;
+  const auto next_line = [&text] {
+    const std::size_t end = text.find('\n');
+    const std::string line = text.substr(0, end);
+    text.erase(0, end + 1);
+    return line;
+  };
+  const std::string name = next_line(), path = next_line();
+  std::vector<std::string> inputs(std::stoul(next_line()));
+  for (std::string& input : inputs) input = next_line();
   try {
     start_python();
   } catch (const std::exception& raised) {
@@ -333,13 +363,14 @@ void* create(const char* options, const rodsweep_rod* rods, int count, char* err
     if (!py::hasattr(own, method)) throw std::invalid_argument("has no class " + name + " with " + method + "()");
     auto made = std::make_unique<Instance>();
     made->folder = file.folder;
+    made->file = path;
+    made->inputs = inputs;
     for (int rod = 0; rod < count; ++rod) made->rods.push_back(rod_of(rods[rod]));
     if (count > 0) {
       made->joints = rods[0].joints;
       py::list list;
       for (const py::object& rod : made->rods) list.append(rod);
-      const Visit visit(made->folder);
-      made->own = own(list, all.substr(second + 1));
+      made->own = made->within([&] { return own(list, text); });
     }
     return made.release();
   });
@@ -376,8 +407,7 @@ int accept_total(void* instance, int rod, int step, const double* total, char* e
     auto* self = static_cast<Instance*>(instance);
     if (!py::hasattr(self->own, "accept_total")) return 0;
     const py::ssize_t unknowns = py::len(self->rods[static_cast<std::size_t>(rod)].attr("compliance_per_j")) * 6;
-    const Visit visit(self->folder);
-    self->own.attr("accept_total")(rod, step, copied(total, {unknowns}));
+    self->within([&] { return self->own.attr("accept_total")(rod, step, copied(total, {unknowns})); });
     return 0;
   });
 }
@@ -394,8 +424,8 @@ int set_up(void* instance, const rodsweep_system* system, char* error) {
 int apply(void* instance, const double* r, double* z, char* error) {
   return guarded(-1, error, [&] {
     auto* self = static_cast<Instance*>(instance);
-    const Visit visit(self->folder);
-    read(self->own.attr("apply")(copied(r, {6 * self->joints})), z, 6 * self->joints, "apply()");
+    const py::object returned = self->within([&] { return self->own.attr("apply")(copied(r, {6 * self->joints})); });
+    read(returned, z, 6 * self->joints, "apply()");
     return 0;
   });
 }

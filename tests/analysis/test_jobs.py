@@ -1,4 +1,4 @@
-"""rodsweep.Job with the program (RODSWEEP): runs, resumed runs, messages of the command line, docs/python.md."""
+"""rodsweep.Job with the program (RODSWEEP): runs, resumed runs, messages of the command line."""
 
 import io
 import json
@@ -136,18 +136,6 @@ class Runs(WithJobs):
         os.chdir("..")
         self.assertEqual(self.run_job(rodsweep.Job.read("results/use.json").changed(name="other")).census().ok, 3)
 
-    def test_the_example_of_the_page(self):
-        page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8").partition("## Jobs from Python")[2]
-        blocks = re.findall(r"```python\n(.*?)```", page.partition("\n## ")[0], re.S)
-        names = {"rodsweep": rodsweep}
-        with unittest.mock.patch("sys.stdout", io.StringIO()) as said:
-            for block in blocks:
-                exec(block, names)
-        self.assertIn("\ntasks                     10\n", said.getvalue())
-        for name in ("results", "learned"):
-            self.addCleanup(names[name].close)
-            self.assertEqual(names[name].census().ok, 10)
-
 
 class Messages(WithJobs):
     def refused(self, call):
@@ -207,6 +195,22 @@ class Messages(WithJobs):
             tiny(scene={**ROD, "radius_m": 50}).validate()
         self.assertEqual(caught.filename, __file__)    # the line of the user
 
+    def test_retrained_weights_do_not_give_the_results_of_old_ones(self):
+        Path("g.py").write_text("class Guess:\n"
+                                "    def __init__(self, rods, options): self.w = float(open('w.txt').read())\n"
+                                "    def propose(self, system): return self.w * system.b\n")
+        Path("w.txt").write_text("0")
+
+        def job(**keys):
+            return tiny(guesses=["zero", {"python": {"file": "g.py", **keys}}])
+
+        with self.assertWarnsRegex(rodsweep.JobWarning, r'^g.py opened w.txt, .* "inputs": \["w.txt"\]$'):
+            self.run_job(job(), output="unnamed.h5")
+        self.run_job(job(inputs=["w.txt"]))
+        Path("w.txt").write_text("1e-9")
+        self.assertRegex(self.refused(job(inputs=["w.txt"]).run),
+                         "input files of the job have changed: .*/g.py, .*/w.txt")
+
     def test_a_run_that_stops_early_says_why(self):
         words = r"^no remaining task fits into the time limit of .*\. \(exit code 5\)$"
         with self.assertRaisesRegex(rodsweep.JobError, words) as caught:
@@ -239,6 +243,10 @@ class Parts(WithJobs):
     def test_keys_of_input_files_are_those_of_the_program(self):
         sources = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("runner/job/*.?pp"))
         self.assertEqual({*re.findall(r'file_key\("(\w+)"', sources), "data"}, set(job_paths.PATHS))    # data: of trainings
+        guesses = [{"python": {"file": "a", "inputs": ["b", "c"]}},
+                   {"plugin": {"library": "d", "inputs": {"grid": [["e"], []]}}},
+                   {"knn": {"data": "f", "inputs": {"grid": ["all", "shape"]}}}]
+        self.assertEqual(job_paths.given({"guesses": guesses}), list("abcdef"))
 
     def test_the_bar_fits_its_terminal(self):
         with unittest.mock.patch("sys.stderr", Bar()) as shown, unittest.mock.patch.dict(os.environ, {"TERM": "xterm", "COLUMNS": "20"}):

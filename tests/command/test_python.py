@@ -200,6 +200,59 @@ class Python(WithPython):
             with h5py.File(f"{norm}.h5") as file:
                 self.assertEqual(file["/tasks/outcome"][0].rstrip(b"\0"), b"indefinite")
 
+    def test_a_sweep_is_not_resumed_with_other_weights(self):
+        self.write("mine.py", guess("def propose(self, system): return float(open('weights.txt').read()) * system.b"))
+        self.write("weights.txt", "1e-9")
+        job = self.job({"python": {"file": "mine.py", "inputs": ["weights.txt"]}})
+        said = self.ran("run", job, "-o", "s.h5")
+        self.assertNotIn("warning", said.stderr)
+        self.write("weights.txt", "-1e-9")
+        self.assertIn("or input files of the job have changed: mine.py, weights.txt",
+                      self.ran("run", job, "-o", "s.h5", "--resume", code=2).stderr)
+
+    def test_a_file_that_is_opened_but_not_named_is_told_once_with_the_key_to_write(self):
+        self.write("helper.py", "ONE = 1.0\n")
+        self.write("other.txt", "1")
+        self.write("mine.py", "import json, helper\nfrom multiprocessing import shared_memory\n" + guess(
+            "def propose(self, system):\n"
+            "        with open('made.txt', 'w') as file: file.write('1')\n"
+            "        for name in ('made.txt', 'weights.txt', '/etc/passwd'): open(name).close()\n        return None"))
+        self.write("weights.txt", "1")
+        helper = 'warning: mine.py opened helper.py, which the job does not name: .*"inputs": \\["helper.py"\\]'
+        weights = 'warning: mine.py opened weights.txt, which .*"inputs": \\["helper.py", "weights.txt"\\]'
+        for inputs, told in (([], (helper, weights)), (["helper.py"], (weights, )),
+                             (["./helper.py", "weights.txt", "other.txt"], ())):
+            for ranks in ((), ("-n", "2")):
+                job = self.job({"python": {"file": "mine.py", "inputs": inputs}},
+                               time={"step_s": {"grid": [0.01, 0.02]}, "steps": 5})
+                said = self.ran("run", job, *ranks, "-o", f"{len(inputs)}-{len(ranks)}.h5").stderr
+                self.assertEqual(said.count("warning"), len(told), said)
+                for words in told:
+                    self.assertRegex(said, words)
+
+    def test_a_preconditioner_and_a_plug_in_have_inputs_too(self):
+        self.write("mine.py", "class Preconditioner:\n    def __init__(self, rods, options): pass\n"
+                   "    def apply(self, r): return float(open('weights.txt').read()) * r\n")
+        self.write("weights.txt", "1")
+        for inputs in ([], ["weights.txt"]):
+            solve = {"preconditioner": "python", "python_preconditioner": {"file": "mine.py", "inputs": inputs}}
+            said = self.ran("run", self.job(solve=solve), "-o", f"{len(inputs)}.h5").stderr
+            self.assertEqual("mine.py opened weights.txt" in said, not inputs, said)
+        job = self.job({"plugin": {"library": "weights.txt", "inputs": ["none.txt"]}})
+        said = self.ran("validate", job, code=2).stderr
+        self.assertIn('guesses[1].plugin.inputs[0]: "none.txt" is not allowed: none.txt was not found', said)
+
+    def test_an_environment_of_another_python_is_named_with_both_versions(self):
+        self.write("mine.py", guess("def propose(self, system): pass"))
+        job = self.job({"python": {"file": "mine.py"}})
+        own = f"python{sys.version_info[0]}.{sys.version_info[1]}"    # the program embeds the Python of the tests
+        for folder, version in (("lib/python3.1/site-packages", "3.1.4"), (f"lib/{own}/site-packages", "")):
+            os.makedirs(f"env/{folder}")
+            self.write("env/pyvenv.cfg", f"home = /usr/bin\nversion = {version}\n")
+            said = self.ran("validate", job, env={**os.environ, "VIRTUAL_ENV": os.path.abspath("env")}).stderr
+            words = f"env, of Python 3.1.4: its packages are not found by rodsweep's P{own[1:6]} {own[6:]}; make"
+            self.assertEqual(words in said, bool(version), said)
+
     def test_a_sweep_is_not_resumed_with_another_file(self):
         self.new("guess", "mine.py")
         self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5")
@@ -232,7 +285,7 @@ class Python(WithPython):
         folder = os.path.dirname(os.environ["RODSWEEP"])
         paths = {"PATH": f"{folder}:{os.environ['PATH']}", "PYTHONPATH": ANALYSIS}
         for commands in re.findall(r"```sh\n(.*?)```", text, re.DOTALL)[2:]:
-            subprocess.run(["bash", "-euo", "pipefail", "-c", commands.replace("python3", "/usr/bin/python3")], check=True,
+            subprocess.run(["bash", "-euo", "pipefail", "-c", commands], check=True,
                            env={**os.environ, **paths}, stdout=subprocess.DEVNULL)
         with h5py.File("results/net_guess.h5") as file:
             labels = file["/axes/guess"][:].tolist()

@@ -1,13 +1,17 @@
 """Paths of input files in a parsed job, or in a part of it."""
 
-PATHS = ("curves", "data", "file", "library", "model", "skeleton")    # their keys (tested)
-SWEEPS = ("grid", "zip")                            # a path may stand in a list of these
+PATHS = ("curves", "data", "file", "inputs", "library", "model", "skeleton")    # their keys (tested)
+NO_PATHS = {("knn", "inputs")}          # the same name elsewhere
+SWEEPS = ("grid", "zip")                # a path may stand in a list of these
 
 
 def placed(value, place, keys=PATHS, key=""):
     """The value, which belongs to `key`, with place(path) for every path of these keys in it."""
     if isinstance(value, dict):
-        return {inner: placed(item, place, keys, key if inner in SWEEPS else inner) for inner, item in value.items()}
+        def key_of(inner):
+            return key if inner in SWEEPS else "" if (key, inner) in NO_PATHS else inner
+
+        return {inner: placed(item, place, keys, key_of(inner)) for inner, item in value.items()}
     if isinstance(value, list):
         return [placed(item, place, keys, key) for item in value]
     return place(value) if key in keys and isinstance(value, str) else value
