@@ -8,9 +8,9 @@ all settings, of the direct solve, of CG from zero, from a classical and from a 
 preconditioner, of CG with Jacobi (the setting of Shao et al. 2021), and of Gauss-Seidel. rodsweep/reading/score.py
 defines error and time.
 
-With a guess in Python instead of files, FILE.py, the script runs these settings of all scenes (jobs/score/NAME_test.json, or
-the jobs that are given) here, and with each of CG's this guess too, and shows its row beside the others'. The others are
-then the cheapest on these draws. A stopped run goes on.
+With a guess in Python instead of files, FILE.py, the script runs these settings of all scenes
+(jobs/score/NAME_test.json, or the jobs that are given) into results/, and with each of CG's this guess too, and shows
+its row beside the others'. The others are then the cheapest on these draws. A stopped run goes on.
 
 Times are medians over test draws, of learned settings also over trainings (the models seeds/NAME-2.h5, ... beside
 NAME.h5). "÷ cheapest" is the median of the quotients with the cheapest of all, with its 95 % bootstrap interval; of
@@ -22,6 +22,7 @@ import argparse
 import glob
 import json
 import os
+import sys
 
 import numpy as np
 import rodsweep
@@ -46,6 +47,8 @@ def arguments():
                       help=f"results of a tuning job, NAME{ENDING}; or a guess in Python and jobs")
     made.add_argument("--jobs", action="store_true",
                       help="write NAME_test.json for each file, into the folder of -o or beside it, and do no more")
+    made.add_argument("--inputs", nargs="+", metavar="FILE", default=[],
+                      help="other files that the guess reads, such as weights: results of changed ones are not mixed")
     made.add_argument("--workers", type=commandline.whole_number, default=os.cpu_count(), metavar="N",
                       help="cores for a guess of yours (default: all)")
     made.add_argument("--samples", type=commandline.whole_number, default=10, metavar="N",
@@ -58,7 +61,7 @@ def main():
     options = arguments()
     scenes, models = {}, {}
     if options.files[0].endswith(".py"):
-        print("\n".join(table(with_guess(options.files[0], options.files[1:] or sorted(glob.glob(JOBS)), options.workers))))
+        print("\n".join(table(with_guess(options, options.files[1:] or sorted(glob.glob(JOBS))))))
         return
     for path in options.files:
         if not path.endswith(ENDING):
@@ -82,18 +85,31 @@ def main():
         print("\n".join(figure(scenes, width).save(folder, "score", options.format, not options.no_caption)))
 
 
-def with_guess(guess, jobs, workers):
+def with_guess(options, jobs):
     """The scenes of these jobs with a guess in Python: {title: rows_of()}, its results in results/."""
     if not jobs:
         raise KeyNotFound(f"there are no jobs {JOBS}: `make score` writes them, or give some")
-    scenes, entry = {}, {"python": {"file": os.path.abspath(guess)}}
-    for path in jobs:
-        job = rodsweep.Job.read(path)
-        name = f"{job.name}_{os.path.basename(guess).removesuffix('.py')}"
-        with job.changed(name=name, guesses=[*job.values.get("guesses", ["zero"]), entry]).run(workers) as results:
+    guess, scenes = options.files[0], {}
+    entry = {"python": {"file": os.path.abspath(guess)}}
+    if options.inputs:
+        entry["python"]["inputs"] = [os.path.abspath(path) for path in options.inputs]
+    jobs = [rodsweep.Job.read(path) for path in jobs]
+    jobs = [job.changed(name=f"{job.name}_{os.path.basename(guess).removesuffix('.py')}",
+                        guesses=[*job.values.get("guesses", ["zero"]), entry]) for job in jobs]
+    announce([job for job in jobs if not os.path.exists(f"results/{job.name}.h5")])
+    for job in jobs:
+        with job.run(options.workers) as results:
             found = score.runs(results.file)
             scenes[title(results.file)] = rows_of(score.chosen(found), found)
     return scenes
+
+
+def announce(jobs):
+    plans = [job.plan(probe=False) for job in jobs]
+    if plans:
+        tasks, size = (sum(plan[name] for plan in plans) for name in ("tasks", "file_bytes"))
+        print(f"{len(plans)} new file{'s' * (len(plans) > 1)} in results/ will have {tasks} tasks and take "
+              f"{1e-6 * size:,.0f} MB", file=sys.stderr)
 
 
 def title(file):

@@ -22,8 +22,12 @@ def runs(error, time_s):
     return score.Runs(draws, np.full(5, error), np.asarray(time_s) * np.ones(5), np.ones(5))
 
 
+SEEDS = {"rods-2": "rods", "rods-3": "rods"}
+
+
 def setting(guess="", preconditioner="jacobi", step_s=0.01, method="cg"):
-    return score.Setting(Way(method, 1, 0, 1e-2, preconditioner, guess) if guess else Way(method, 1), "bdf2", step_s)
+    way = Way(method, 1, 0, 1e-2, preconditioner, guess) if guess else Way(method, 1)
+    return score.Setting(way, "bdf2", step_s, seeds=SEEDS)
 
 
 class Choice(unittest.TestCase):
@@ -63,9 +67,24 @@ class Choice(unittest.TestCase):
     def test_learned_settings_have_the_median_of_their_trainings_and_the_interval_of_all(self):
         learned, base = setting("copingnet rods 5 lag 8"), runs(0, [1, 1, 1, 1, 1])
         found = {setting(f"copingnet rods{seed} 5 lag 8"): runs(0, [time] * 5) for seed, time in (("", 2), ("-2", 5), ("-3", 4))}
-        found |= {setting("copingnet rods-large 5 lag 8"): base, setting("copingnet rods-2 5 lag 9"): base}
+        found |= {setting("copingnet rods-large 5 lag 8"): base, setting("copingnet rods-2 5 lag 9"): base,
+                  setting("copingnet rods-32 5 lag 8"): base}
         factor = score.factor(score.trainings(learned, found), base)
         self.assertEqual([float(factor.value), float(factor.low), float(factor.high)], [4, 2, 5])
+
+    def test_a_setting_is_chosen_by_one_training_and_shown_with_all(self):
+        found = {setting(method="direct"): runs(0.005, 7), setting("zero"): runs(0.05, 5)}
+        for seed, time in (("", 4), ("-2", 3), ("-3", 9)):
+            found[setting("zero", f"learned rods{seed}")] = runs(0.05, time)
+        best = score.chosen(found)[0.1, "CG, learned preconditioner"]
+        self.assertEqual(best, setting("zero", "learned rods"))
+        self.assertEqual(len(score.trainings(best, found)), 3)
+
+    def test_seeds_are_the_models_in_the_folder_seeds_beside_one_of_the_job(self):
+        names = ("rods", "rods-32", "seeds/rods-2", "seeds/net-2")
+        guesses = [{"copingnet": {"model": f"models/{name}.h5"}} for name in names]
+        solve = {"zip": [{"learned_preconditioner": {"model": "models/seeds/rods-3.h5"}}]}
+        self.assertEqual(score.seeds_in({"guesses": guesses, "solve": solve}), SEEDS)
 
 
 class Ways(Folder):
@@ -170,11 +189,16 @@ class Files(unittest.TestCase):
                            "    def propose(self, system): return 0 * system.b\n")
             done = run("score.py", "half.py", "rod_test.json", "--workers", "1")
             self.assertEqual(done.code, 0, done.stderr)
+            size = 1e-6 * os.path.getsize("results/rod_test_half.h5")
+            with SweepFile("results/rod_test_half.h5") as file:
+                words = f"1 new file in results/ will have {file.task_count} tasks and take {size:.0f} MB"
+            self.assertIn(words, done.stderr)
             block = done.stdout.split("\n\n")[0].splitlines()
             self.assertEqual([line.split("  ")[0] for line in block[1:]], list(score.ANSWERS))
             self.assertRegex(block[-1], r"^your guess +[\d.]+ .* from python half ")
             again = run("score.py", "half.py", "rod_test.json", "--workers", "1")
             self.assertEqual(again.stdout, done.stdout)    # of the same results
+            self.assertNotIn("new file", again.stderr)
 
 
 if __name__ == "__main__":

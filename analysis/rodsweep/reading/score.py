@@ -42,6 +42,7 @@ class Setting:
     integrator: str
     step_s: float
     solve: dict = field(default_factory=dict, compare=False)    # its entry in a job
+    seeds: dict = field(default_factory=dict, compare=False)    # seeds_in() its job
 
     def text(self):
         return f"{self.way.text()}, {self.integrator} {1e3 * self.step_s:g} ms"
@@ -63,8 +64,9 @@ class Setting:
         return replace(self, way=accuracy.Way("direct", self.way.newton))
 
     def without_seeds(self):
-        """With the models that others, NAME-2.h5, differ from only in their seed."""
-        guess, preconditioner = (re.sub(r"-\d+(?= |$)", "", text) for text in (self.way.guess, self.way.preconditioner))
+        """With the models that its own, seeds/NAME-2.h5, differ from only in their seed."""
+        guess, preconditioner = (re.sub(r"[\w.-]+", lambda name: self.seeds.get(name[0], name[0]), text)
+                                 for text in (self.way.guess, self.way.preconditioner))
         return replace(self, way=replace(self.way, guess=guess, preconditioner=preconditioner))
 
 
@@ -87,7 +89,7 @@ def runs(file):
     step, method = file.parameter(STEP).values, file.parameter("solve.method").values
     keys = {name: _solve_keys(file.job()["solve"], name) for name in np.unique(method)}
     tasks = np.flatnonzero(file.complete)
-    rows = {}
+    rows, seeds = {}, seeds_in(file.job())
     for draw in np.unique(file.sample[tasks]):
         of = tasks[file.sample[tasks] == draw]
         best = of[np.argmin(step[of])]
@@ -96,7 +98,7 @@ def runs(file):
         exact = accuracy.frames(file, best)
         for task in of[step[of] > step[best]]:
             setting = Setting(accuracy.way_of(file, task), str(file.parameter(INTEGRATOR).values[task]), float(step[task]),
-                              _solve_entry(file, task, keys[method[task]]))
+                              _solve_entry(file, task, keys[method[task]]), seeds)
             error = distance(accuracy.frames(file, task), exact) if file.ok[task] else np.inf
             rows.setdefault(setting, []).append((draw, error, *_effort(file, task)))
     if not rows:
@@ -116,7 +118,9 @@ def _reaches(setting, found, level):
 
 
 def chosen(found):
-    """{(level, answer): Setting} of a tuning file's runs."""
+    """{(level, answer): Setting} of {Setting: Runs}. The choice is among models of one training each: the fastest of
+    several trainings is fast by chance."""
+    found = {setting: of for setting, of in found.items() if setting.without_seeds() == setting}
     best = {(level, answer): cheapest(found, answer, level) for level in LEVELS for answer in ANSWERS}
     return {key: setting for key, setting in best.items() if setting}
 
@@ -165,6 +169,19 @@ def seeds_of(path):
     stem = name.removesuffix(".h5")
     found = os.listdir(os.path.join(folder, "seeds")) if os.path.isdir(os.path.join(folder, "seeds")) else []
     return sorted(os.path.join(folder, "seeds", other) for other in found if re.fullmatch(re.escape(stem) + r"-\d+\.h5", other))
+
+
+def seeds_in(job):
+    """{name of a model of the job, seeds/NAME-2.h5: name of the model beside that folder}, both without .h5, if the job
+    has both."""
+    models = [os.path.splitext(path)[0] for path in job_paths.given(job, ("model",))]
+    found = {}
+    for path in models:
+        folder, name = os.path.split(path)
+        base = re.sub(r"-\d+$", "", name)
+        if os.path.basename(folder) == "seeds" and os.path.join(os.path.dirname(folder), base) in models:
+            found[name] = base
+    return found
 
 
 def _with_seeds(entries, folder):
