@@ -53,7 +53,7 @@ void run(const std::string& text, const std::function<void()>& after) {
   const fs::path path = temporary('_' + std::to_string(files++) + ".py");
   std::ofstream(path) << text;
   const auto source = [&](const char* kind) {
-    return PluginSource{PYTHON_PLUGIN, std::string(kind) + '\n' + path.native() + '\n', path.filename().native()};
+    return PluginSource{PYTHON_PLUGIN, std::string(kind) + '\n' + path.native() + "\n0\n", path.filename().native()};
   };
   const test::OneRod one;
   VectorX x = one.system.rhs(), z = x;
@@ -62,7 +62,7 @@ void run(const std::string& text, const std::function<void()>& after) {
     after();
     guess.propose(one.system, {0, 0, 0}, x);
     after();
-    guess.accept({0, 0, 0}, x);
+    guess.accept(one.system, {0, 0, 0}, x);
     after();
     PluginPreconditioner preconditioner(source("Preconditioner"), one.scene.rods[0], 0, one.system);
     after();
