@@ -157,7 +157,7 @@ void ContactBodies::exclude_near(const Rod& rod, int first_body, const Meetings&
 // From every two segments that meet in a point, outwards along both, as long as they overlap at rest.
 void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Meetings& meetings) {
   /// Two segments, where their path arrives on each, and the rest pose of b in the frame of a.
-  struct Pair {
+  struct Meet {
     int a, b;
     Vector3 arm_a, arm_b;
     RestPose pose;
@@ -169,9 +169,9 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Me
   const auto beside = [](const Vector3& arm, const Vector3& other, double length) {
     return (arm - other).norm() <= 1e-9 * length;
   };
-  std::vector<Pair> open;
+  std::vector<Meet> open;
   std::unordered_set<std::uint64_t> known;
-  const auto add = [&](const Pair& pair) {
+  const auto add = [&](const Meet& pair) {
     if (pair.a == pair.b) return;
     const Segment &a = segment(pair.a), &b = segment(pair.b);
     const double apart = separation(axis({}, a), axis(pair.pose, b)).norm();
@@ -215,7 +215,7 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Me
     }
   };
   while (!open.empty()) {
-    const Pair pair = open.back();
+    const Meet pair = open.back();
     open.pop_back();
     outwards(pair.b, pair.arm_b, pair.pose, [&](int next, const Vector3& arm, const RestPose& pose) {
       add({pair.a, next, pair.arm_a, arm, pose});

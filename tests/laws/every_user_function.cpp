@@ -21,7 +21,8 @@ namespace rodsweep::every_user_function {
 namespace fs = std::filesystem;
 
 /// What the program calls, by the names in a traceback.
-const std::vector<std::string> functions{"<module>", "__init__", "propose", "accept", "set_up", "apply", "__del__"};
+const std::vector<std::string> functions{"<module>",     "__init__", "propose", "accept",
+                                         "accept_total", "set_up",   "apply",   "__del__"};
 
 fs::path temporary(const std::string& name) {
   return fs::temp_directory_path() / ("user_function_" + std::to_string(getpid()) + name);
@@ -37,6 +38,7 @@ class Guess:
     def __del__(self): now('__del__')
     def propose(self, system): now('propose')
     def accept(self, system, x): now('accept')
+    def accept_total(self, rod, step, x): now('accept_total')
 class Preconditioner:
     def __init__(self, rods, options): now('__init__')
     def __del__(self): now('__del__')
@@ -63,6 +65,8 @@ void run(const std::string& text, const std::function<void()>& after) {
     guess.propose(one.system, {0, 0, 0}, x);
     after();
     guess.accept(one.system, {0, 0, 0}, x);
+    after();
+    guess.accept_total(0, 0, x);
     after();
     PluginPreconditioner preconditioner(source("Preconditioner"), one.scene.rods[0], 0, one.system);
     after();
