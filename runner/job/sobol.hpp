@@ -1,12 +1,12 @@
-// Random values that cover ranges evenly: a digital sequence in base 2 for each key, which depends on the seed and the key
-// alone. So a sample keeps its values if other keys are drawn too, and if there are more samples.
+// Random values that cover ranges evenly: a digital sequence in base 2 for each key, which depends on the seed and the
+// key alone. So a sample keeps its values if other keys are drawn too, and if there are more samples.
 //
 // Some keys have a dimension of Sobol's sequence (Sobol' 1967; direction numbers of Joe & Kuo 2008, from Boost.Random):
 // also their pairs and triples are even. The others have random direction numbers, so pairs with them are as even as
 // by chance. In both, each of 2^k equal intervals contains one of the first 2^k points, for every k.
 //
-// Points are in the Gray-code order of Antonov & Saleev (1979). Owen's scrambling (1995) preserves the net and makes means
-// unbiased; here with the hash of Laine & Karras (2011) and constants of Vegdahl (2021).
+// Points are in the Gray-code order of Antonov & Saleev (1979). Owen's scrambling (1995) preserves the net and makes
+// means unbiased; here with the hash of Laine & Karras (2011) and constants of Vegdahl (2021).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands from outside: output, files, refusals. Their exit codes: tests/laws/test_commands.py."""
+"""The commands from outside: output, files, refusals. Their exit codes: tests/laws/every_command.py."""
 
 import csv
 import io
@@ -216,7 +216,7 @@ class DataSets(Case):
 
 
 class Output(Case):
-    """Output that is not writable: see tests/laws/test_commands.py too."""
+    """Output that is not writable: see tests/laws/every_command.py too."""
 
     def test_the_results_of_a_sweep_are_complete_all_the_same(self):
         sweep()

@@ -83,7 +83,7 @@ class Damaged(Plain):
 
 
 class Full(Plain):
-    """A disk that fills up: files are in tests/laws/test_commands.py."""
+    """A disk that fills up: files are in tests/laws/every_command.py."""
 
     def test_text_that_has_no_room_is_an_error(self):
         with open("text", "w", encoding="utf-8") as text:

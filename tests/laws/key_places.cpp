@@ -248,12 +248,13 @@ std::map<std::string, Json> jobs_by_scene() {
 
 void visit_keys(const std::function<void(const KeyPlace&)>& visit) {
   for (const auto& [type, job] : jobs_by_scene()) Walk(job, visit).at(part("scene"), "/scene", "sweep");
-  std::vector<Json> jobs{data_job(), train_job()};
-  for (const std::string& method : find_key(part("solve").keys, "method")->choices) jobs.push_back(job_with(method));
   const std::function<void(const KeyPlace&)> but_scene = [&](const KeyPlace& at) {
     if (at.pointer.rfind("/scene", 0) != 0) visit(at);
   };
-  for (const Json& job : jobs) Walk(job, but_scene).members(job_key(), "", job["kind"]);
+  for (const Json& job : {data_job(), train_job(), job_with("cg")})
+    Walk(job, but_scene).members(job_key(), "", job["kind"]);
+  for (const std::string& method : find_key(part("solve").keys, "method")->choices)
+    if (method != "cg") Walk(job_with(method), visit).at(part("solve"), "/solve", "sweep");
 }
 
 std::vector<Json> candidates(const Key& key) {

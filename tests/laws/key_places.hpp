@@ -38,8 +38,8 @@ struct KeyPlace {
   Json with(Json value) const;
 };
 
-/// Every key: those of a scene in each scene that has them, those that all scenes have in bending rods; with each method,
-/// in each guess, in data sets and trainings.
+/// Every key: those of a scene in each scene that has them, those that all scenes have in bending rods; those of `solve`
+/// with each method; those of all guesses, of data sets and of trainings.
 void visit_keys(const std::function<void(const KeyPlace&)>& visit);
 
 /// A sweep of each scene, by its type.

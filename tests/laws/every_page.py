@@ -7,7 +7,7 @@ reader has: the source tree with the program, and the results of the two command
   python   is written to the file that the text before it names, else run in one interpreter for the page
   others   are output
 
-LEFT_OUT has what is not run, with the reason. `test_pages.py long` runs what takes minutes.
+LEFT_OUT has what is not run, with the reason. `every_page.py long` runs what takes minutes.
 """
 
 import ast

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <tuple>
 
+#include "runner/experiment/inputs.hpp"
 #include "tests/laws/key_places.hpp"
 
 namespace rodsweep::laws {
@@ -11,7 +12,7 @@ namespace test_keys {
 using Identity = std::tuple<std::string, std::vector<std::string>, std::string>;
 
 std::vector<Identity> tasks(const Json& job) {
-  const Plan plan(read(job));
+  const Plan plan = checked_plan(read(job));
   std::vector<Identity> found;
   for (const Task& task : plan.tasks()) {
     const TaskIdentity identity = plan.identity(task.index);
@@ -41,9 +42,8 @@ TEST_CASE("the tasks of a swept key are those of its values") {
     std::vector<Identity> expected;
     for (const Json& value : values)
       for (const Identity& task : tasks(at.with(value))) expected.push_back(task);
-    const Json job = at.with(grid(values));
-    REQUIRE(objection(job) == "");
-    const std::vector<Identity> found = tasks(job);
+    std::vector<Identity> found;
+    CHECK(message_of<JobError>([&] { found = tasks(at.with(grid(values))); }) == "");
     CHECK(found.size() == expected.size());
     CHECK((at.is_tag || found == expected));  // a swept tag gives no defaults to keys that only one value has
     ++swept;

@@ -1,5 +1,5 @@
-// Every sampling: a drawn value depends on seed, sample and key alone. So old values stay if another key is drawn too, if
-// there are more samples, grid points or scenes, and in every part of a run.
+// Every sampling: a drawn value depends on seed, sample and key alone. So old values stay if another key is drawn too,
+// and if there are more samples, grid points or scenes.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>

@@ -1,4 +1,5 @@
-// Every key that takes a file: accepted, planned and run are files of its kind, whatever surrounds the key, and no others.
+// Every key that takes a file: files of its kind are accepted, planned and run, whatever surrounds the key, and no
+// others.
 #include <catch2/catch.hpp>
 
 #include "runner/experiment/inputs.hpp"
