@@ -2,9 +2,9 @@
 // joints' multipliers (conjugate_gradient.hpp) or the motions of crossings (condensed_cg.hpp).
 //
 // Convergence: the norm of A's residual relative to that of b (`reference`), also with a guess. One solver per guess
-// and rod. CG updates its residual in each iteration. The update's error is rounding of the largest residual, so the
-// true residual replaces it, and CG starts again from there, before it is 1e-12 of the first one: this happens if a guess
-// starts far above b (residual replacement: van der Vorst & Ye 2000, SIAM J. Sci. Comput. 22). If rounding keeps the true
+// and rod. CG updates its residual in each iteration, with rounding errors of the size of the largest residual. So once
+// the update is 1e-12 of the first residual, CG starts again from the true one: this happens if a guess starts far above
+// b (residual replacement: van der Vorst & Ye 2000, SIAM J. Sci. Comput. 22). If rounding keeps the true
 // residual above the tolerance, the outcome is `iteration_limit`. A preconditioner of the user's is examined where
 // convergence could be an effect of its not being positive definite.
 #pragma once
