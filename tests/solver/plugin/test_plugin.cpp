@@ -126,7 +126,7 @@ TEST_CASE("numbers are rounded as before, whatever a function of a plug-in chang
     CHECK(rounds_as_ever());
     guess.propose(one.system, {0, 0, 0}, x);
     CHECK(rounds_as_ever());
-    guess.accept({0, 0, 0}, x);
+    guess.accept(one.system, {0, 0, 0}, x);
     CHECK(rounds_as_ever());
     PluginPreconditioner preconditioner(example("rounds"), one.scene.rods[0], 0, one.system);
     preconditioner.set_up(one.system.matrix());
