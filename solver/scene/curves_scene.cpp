@@ -209,7 +209,7 @@ class Builder {
   std::vector<SegmentSpec> segments_;  ///< of the edges
   std::vector<std::vector<End>> ends_;
   std::vector<double> from_held_;  ///< of every node
-  std::vector<End> hub_;  ///< of the nodes of three and more edges, in their order
+  std::vector<End> hub_;           ///< of the nodes of three and more edges, in their order
   std::vector<bool> is_hub_;
   std::vector<int> number_;  ///< of each edge's segment in its rod
 };
