@@ -17,13 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Calls `visit(scene, path)` for each scene of a sweep of scenes.
+/// Calls `visit(object, path)` for an object, or for each of a sweep of objects.
 template <class Visit>
-void visit_scenes(const Json& scenes, const std::string& path, const Visit& visit) {
-  const std::string word = sweep_word(scenes);
-  if (word.empty()) return visit(scenes, path);
-  for (std::size_t i = 0; i < scenes[word].size(); ++i)
-    visit_scenes(scenes[word][i], element(member(path, word), i), visit);
+void visit_objects(const Json& value, const std::string& path, const Visit& visit) {
+  const std::string word = sweep_word(value);
+  if (word.empty()) return visit(value, path);
+  for (std::size_t i = 0; i < value[word].size(); ++i)
+    visit_objects(value[word][i], element(member(path, word), i), visit);
 }
 
 /// The single values that a key can take in a validated job, each with its path.
@@ -75,7 +75,7 @@ std::string what_twists(const Json& scene, const std::string& path) {
 std::vector<std::string> thick_rods(const Json& scenes, const std::filesystem::path& file) {
   const Key& radius = *find_key(scene_keys().keys(), "radius_m");
   std::vector<std::string> warnings;
-  visit_scenes(scenes, "scene", [&](const Json& scene, const std::string& path) {
+  visit_objects(scenes, "scene", [&](const Json& scene, const std::string& path) {
     double thickest = 0;
     std::string place;
     visit_numbers(scene.value("radius_m", Json()), member(path, "radius_m"), [&](double number, const std::string& at) {
@@ -111,7 +111,7 @@ std::vector<std::string> assumed_of_skeletons(const Job& job) {
 /// How far points of curves move to meet within `join_m`, at most.
 std::vector<std::string> joined_curves(const Job& job) {
   std::vector<std::string> warnings;
-  visit_scenes(job.values["scene"], "scene", [&](const Json& scene, const std::string& path) {
+  visit_objects(job.values["scene"], "scene", [&](const Json& scene, const std::string& path) {
     double farthest = 0;
     std::string place;
     visit_numbers(scene.value("join_m", Json()), member(path, "join_m"), [&](double join_m, const std::string& at) {
@@ -141,12 +141,12 @@ std::vector<std::string> joined_curves(const Job& job) {
 /// For each load that changes within a step of BDF2, which then acts for half a step too long.
 std::vector<std::string> jumping_loads(const Json& values, const std::filesystem::path& file) {
   bool may_be_bdf2 = false;
-  visit_values(values["time"]["integrator"], "",
-               [&](const Json& word, const std::string&) { may_be_bdf2 |= word == "bdf2"; });
-  if (!may_be_bdf2) return {};
   double step_s = 0;
-  visit_numbers(values["time"]["step_s"], "",
-                [&](double number, const std::string&) { step_s = std::max(step_s, number); });
+  visit_objects(values["time"], "time", [&](const Json& time, const std::string&) {
+    visit_values(time["integrator"], "", [&](const Json& word, const std::string&) { may_be_bdf2 |= word == "bdf2"; });
+    visit_numbers(time["step_s"], "", [&](double number, const std::string&) { step_s = std::max(step_s, number); });
+  });
+  if (!may_be_bdf2) return {};
   std::vector<std::string> warnings;
   const auto look = [&](const Json& load, const std::string& path) {
     if (!load.is_object()) return;
@@ -164,7 +164,7 @@ std::vector<std::string> jumping_loads(const Json& values, const std::filesystem
               .what());
     }
   };
-  visit_scenes(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
+  visit_objects(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
     visit_values(scene["loads"], member(path, "loads"), look);
   });
   return warnings;
@@ -174,7 +174,10 @@ std::vector<std::string> jumping_loads(const Json& values, const std::filesystem
 /// method could.
 std::vector<std::string> unbalanced_loads(const Json& values, const std::filesystem::path& file) {
   const Json method = values.value("solve", Json::object()).value("method", Json("direct"));  // data sets have none
-  if (values["time"]["balance"] != false || (method.is_string() && method != "cg" && method != "direct")) return {};
+  bool balances = false;
+  visit_objects(values["time"], "time",
+                [&](const Json& time, const std::string&) { balances |= time["balance"] != false; });
+  if (balances || (method.is_string() && method != "cg" && method != "direct")) return {};
   std::vector<std::string> warnings;
   const auto warn = [&](const std::string& path, const char* what, const char* also = "") {
     warnings.emplace_back(
@@ -182,7 +185,7 @@ std::vector<std::string> unbalanced_loads(const Json& values, const std::filesys
                   fmt::format("{}; set \"balance\": true{} in \"time\" (methods direct and cg)", what, also))
             .what());
   };
-  visit_scenes(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
+  visit_objects(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
     for (const char* load : {"tip_force_n", "tip_torque_nm", "loads"}) {
       if (scene["type"] == Lattice::name && load == std::string("tip_force_n")) continue;  // at centres of segments
       if ((std::string(load) == "loads" && has_item(scene["loads"])) || may_be_nonzero(scene.value(load, Json())))
@@ -198,7 +201,7 @@ std::vector<std::string> unbalanced_loads(const Json& values, const std::filesys
 }  // namespace
 
 void check_obstacles(const Json& scenes, const std::filesystem::path& file) {
-  visit_scenes(scenes, "scene", [&](const Json& scene, const std::string& path) {
+  visit_objects(scenes, "scene", [&](const Json& scene, const std::string& path) {
     if (scene["contact"] == "none" && has_item(scene["obstacles"]))
       throw job_error(file, member(path, "obstacles"),
                       "rods without \"contact\" pass through obstacles; give the scene \"contact\": "

@@ -49,6 +49,11 @@ TEST_CASE("a point load on steps that do not balance momentum is warned of by it
   check_warning(scenes, {"scene.grid[1].tip_force_n: "});
   for (const char* balance : {"true", R"({"grid": [false, true]})"})
     CHECK(job_of(with("/time/balance", balance, loaded)).warnings.empty());
+  for (const auto& [second, warnings] : {std::pair("false", 1u), {"true", 0u}}) {  // `time` as a whole can be swept
+    Json times = loaded;
+    times["time"] = grid({loaded["time"], with("/balance", second, loaded["time"])});
+    CHECK(job_of(times).warnings.size() == warnings);
+  }
   CHECK(job_of(with("/scene/tip_force_n", "[0, 0, 0]")).warnings.empty());
   const char* lattice =  // its loads are at centres of segments
       R"({"type": "lattice", "nodes_x": 3, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05, "density_kg_m3": 1000,
@@ -79,6 +84,9 @@ TEST_CASE("a load that jumps within a step of BDF2 is warned of by its time") {
   check_warning(loaded("[0, 1, 1.001]", "\"bdf2\""),
                 {"scene.loads[0].times_s[2]: the load jumps within a step of 0.02 s", "half a step too long"});
   check_warning(loaded("[0, 1, 1.001]", R"({"grid": ["euler", "bdf2"]})"), {"scene.loads[0].times_s[2]: "});
+  Json times = loaded("[0, 1, 1.001]", "\"euler\"");
+  times["time"] = grid({times["time"], with("/integrator", "\"bdf2\"", times["time"])});
+  check_warning(times, {"scene.loads[0].times_s[2]: "});
   CHECK(job_of(loaded("[0, 1, 1.1]", "\"bdf2\"")).warnings.empty());
   CHECK(job_of(loaded("[0, 1, 1.001]", "\"euler\"")).warnings.empty());
 }
