@@ -3,12 +3,12 @@
 // While contacts are only measured (measure()), a push moves a segment at once, as if it were free. While rods respond
 // (respond()), pushes move them at the next settle(), with the response of their joints (rod_response.hpp). Meanwhile
 // coupling() tells how segments move by impulses on others: in rods with a Delassus operator (delassus_operator.hpp) as
-// they will, in others as if they were free. At the end every segment moves once, x += dx, q <- rotated(q, dtheta), and
+// they will, in others as if they were free. At the end every segment moves once, by dx and dtheta, and
 // lambda += dlambda. Obstacles and static segments do not move.
 //
 // Impulses change velocities, which a step measures from poses x^, q^ (free_flight.hpp): h v = x - x^, h w =
-// rotation(q, q^). So a contact slips with h (v + w x arm), and a segment turns to q = rotated(q^, h w + dtheta + ...)
-// (turned()): friction acts on the spin itself, also if a thin segment turns by radians in a step.
+// rotation(q, q^). So a contact slips with h (v + w x arm), and the part of dtheta about w adds to h w (turned()): friction
+// acts on the spin itself, also if a thin segment turns by radians in a step.
 //
 // The response of a rod with a Delassus operator is assembled once in a step, unless its segments turn
 // (RodResponse::is_stale): the next Newton iteration sees where the bodies are. Others are assembled in each iteration.
