@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <queue>
 #include <string>
 #include <unordered_set>
 #include <utility>
@@ -101,14 +100,9 @@ void ContactBodies::add(const Obstacle& obstacle) {
 }
 
 void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
-  Meetings meetings(rod.segments.size());
-  for (int k = 0; k < rod.joint_count(); ++k) {
-    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
-    meetings[static_cast<std::size_t>(joint.a)].push_back({k, joint.arm_a});
-    meetings[static_cast<std::size_t>(joint.b)].push_back({k, joint.arm_b});
-  }
-  exclude_near(rod, first_body, meetings);
-  exclude_overlapping(rod, first_body, meetings);
+  JointWays ways(rod);
+  exclude_near(rod, first_body, ways);
+  exclude_overlapping(rod, first_body, ways);
   for (int s = first_body; s < first_body + rod.segment_count(); ++s) {
     std::vector<int>& excluded = excluded_[static_cast<std::size_t>(s)];
     std::sort(excluded.begin(), excluded.end());
@@ -116,46 +110,28 @@ void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
   }
 }
 
-// Shortest paths (Dijkstra) over the joints from each segment, as long as the widest pair needs.
-void ContactBodies::exclude_near(const Rod& rod, int first_body, const Meetings& meetings) {
+// Searches as far from each segment as the widest pair needs.
+void ContactBodies::exclude_near(const Rod& rod, int first_body, JointWays& ways) {
   double widest = 0;
   for (const Segment& segment : rod.segments) widest = std::max(widest, segment.radius_m);
-  using Way = std::pair<double, int>;  // length, joint
-  std::priority_queue<Way, std::vector<Way>, std::greater<>> open;
-  std::vector<double> known(rod.joints.size(), HUGE_VAL);
-  std::vector<int> reached;
   for (int start = 0; start < rod.segment_count(); ++start) {
     const double radius = rod.segments[static_cast<std::size_t>(start)].radius_m;
-    const auto arrive = [&](int joint, double way) {
-      double& shortest = known[static_cast<std::size_t>(joint)];
-      if (way >= shortest) return;
-      if (shortest == HUGE_VAL) reached.push_back(joint);
-      shortest = way;
-      open.push({way, joint});
-    };
-    for (const Meeting& at : meetings[static_cast<std::size_t>(start)]) arrive(at.joint, 0);
-    while (!open.empty()) {
-      const auto [way, through] = open.top();
-      open.pop();
-      if (way > known[static_cast<std::size_t>(through)]) continue;
-      const Joint& joint = rod.joints[static_cast<std::size_t>(through)];
-      for (const auto& [segment, arm] : {std::pair{joint.a, joint.arm_a}, std::pair{joint.b, joint.arm_b}}) {
+    const auto exclude = [&](int joint, const JointWays::Way& way) {
+      const Joint& through = rod.joints[static_cast<std::size_t>(joint)];
+      for (const int segment : {through.a, through.b}) {
         const double touching = radius + rod.segments[static_cast<std::size_t>(segment)].radius_m;
-        if (segment > start && way < half_pi * touching)
+        if (segment > start && way.length_m < half_pi * touching)
           excluded_[static_cast<std::size_t>(first_body + start)].push_back(first_body + segment);
-        for (const Meeting& at : meetings[static_cast<std::size_t>(segment)]) {
-          const double next = way + (at.arm - arm).norm();
-          if (next < half_pi * (radius + widest)) arrive(at.joint, next);
-        }
       }
-    }
-    for (const int joint : reached) known[static_cast<std::size_t>(joint)] = HUGE_VAL;
-    reached.clear();
+    };
+    ways.from(
+        ways.joints_of(start), half_pi * (radius + widest), [](int) { return true; }, exclude);
   }
 }
 
 // From every two segments that meet in a point, outwards along both, as long as they overlap at rest.
-void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Meetings& meetings) {
+void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const JointWays& ways) {
+  using Meeting = JointWays::Meeting;
   /// Two segments, where their path arrives on each, and the rest pose of b in the frame of a.
   struct Meet {
     int a, b;
@@ -188,10 +164,10 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Me
     return by.a == from ? std::pair(by.b, by.arm_b) : std::pair(by.a, by.arm_a);
   };
   for (int s = 0; s < rod.segment_count(); ++s)
-    for (const Meeting& one : meetings[static_cast<std::size_t>(s)]) {
+    for (const Meeting& one : ways.joints_of(s)) {
       const auto [a, arm_a] = across(s, one);
       if (s < a) add({s, a, one.arm, arm_a, beyond(joint(one), s, {})});
-      for (const Meeting& other : meetings[static_cast<std::size_t>(s)]) {
+      for (const Meeting& other : ways.joints_of(s)) {
         if (other.joint <= one.joint || !beside(one.arm, other.arm, segment(s).length_m)) continue;
         const auto [b, arm_b] = across(s, other);
         add({a, b, arm_a, arm_b, relative(beyond(joint(one), s, {}), beyond(joint(other), s, {}))});
@@ -199,7 +175,7 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Me
     }
   /// Calls visit(next, its arm, its rest pose) beyond the far end of b; a point between them is passed.
   const auto outwards = [&](int b, const Vector3& arm_b, const RestPose& pose, const auto& visit) {
-    for (const Meeting& at : meetings[static_cast<std::size_t>(b)]) {
+    for (const Meeting& at : ways.joints_of(b)) {
       if (beside(at.arm, arm_b, segment(b).length_m)) continue;
       const auto [next, arm] = across(b, at);
       const RestPose there = beyond(joint(at), b, pose);
@@ -207,7 +183,7 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Me
         visit(next, arm, there);
         continue;
       }
-      for (const Meeting& on : meetings[static_cast<std::size_t>(next)])
+      for (const Meeting& on : ways.joints_of(next))
         if (on.joint != at.joint) {
           const auto [after, arm_after] = across(next, on);
           visit(after, arm_after, beyond(joint(on), next, there));

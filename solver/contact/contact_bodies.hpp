@@ -16,6 +16,7 @@
 
 #include "solver/contact/broad_phase.hpp"
 #include "solver/contact/capsule_distance.hpp"
+#include "solver/rod/joint_ways.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace rodsweep {
@@ -65,14 +66,9 @@ class ContactBodies {
  private:
   void add(const Obstacle& obstacle);
   void connect(const Rod& rod, int first_body);
-  struct Meeting {
-    int joint;
-    Vector3 arm;  ///< on the segment
-  };
-  using Meetings = std::vector<std::vector<Meeting>>;  ///< of every segment of a rod
   void exclude_neighbours(const Rod& rod, int first_body);
-  void exclude_near(const Rod& rod, int first_body, const Meetings& meetings);
-  void exclude_overlapping(const Rod& rod, int first_body, const Meetings& meetings);
+  void exclude_near(const Rod& rod, int first_body, JointWays& ways);
+  void exclude_overlapping(const Rod& rod, int first_body, const JointWays& ways);
 
   std::vector<Body> bodies_;
   struct Moving {
