@@ -150,8 +150,11 @@ bool is_interrupted(std::int64_t work) noexcept {
   return state.interrupted;
 }
 
-void check_interrupted(std::int64_t work, const std::string& where) {
-  if (!is_interrupted(work)) return;
+void check_interrupted(std::int64_t work) {
+  if (is_interrupted(work)) throw_interruption("");
+}
+
+void throw_interruption(const std::string& where) {
   if (current->failure) std::rethrow_exception(current->failure);
   throw InterruptedComputation(where);
 }

@@ -72,6 +72,9 @@ void handle_calls(const CallHandlers& handlers) noexcept;
 bool is_interrupted(std::int64_t work) noexcept;
 
 /// Throws InterruptedComputation, or any exception of the Interruptible's function.
-void check_interrupted(std::int64_t work, const std::string& where = "");
+void check_interrupted(std::int64_t work);
+
+/// What check_interrupted() throws once is_interrupted() has returned true. `where`: the user's code that was running.
+[[noreturn]] void throw_interruption(const std::string& where);
 
 }  // namespace rodsweep

@@ -94,7 +94,7 @@ void PluginInstance::Destroy::operator()(void* instance) const {
 
 void PluginInstance::throw_interrupted() const {
   const std::string text = error_.c_str();
-  check_interrupted(0, plugin_.name() + (text.empty() ? text : " (" + text + ')'));
+  throw_interruption(plugin_.name() + (text.empty() ? text : " (" + text + ')'));
 }
 
 rodsweep_system plugin_system(const Rod& rod, const LinearSystem& system, const SolvePosition& at) {

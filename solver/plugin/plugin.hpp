@@ -75,7 +75,7 @@ class PluginInstance {
     if (is_interrupted(0)) throw_interrupted();
     return returned;
   }
-  void throw_interrupted() const;
+  [[noreturn]] void throw_interrupted() const;
 
   Plugin plugin_;
   std::string error_;  ///< RODSWEEP_ERROR_BYTES for the library to write to
