@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,9 +58,7 @@ void check_common_place(const fs::path& path, MPI_Comm comm) {
 
   std::error_code error;
   const bool found = fs::exists(path.parent_path() / name, error);
-  std::vector<std::string> hosts;
-  for (std::string& host : everywhere(found ? "" : host_name(), comm))
-    if (!host.empty() && std::find(hosts.begin(), hosts.end(), host) == hosts.end()) hosts.push_back(std::move(host));
+  const std::vector<std::string> hosts = distinct_everywhere(found ? "" : host_name(), comm);
   if (hosts.empty()) return;
   throw FileError(
       fmt::format("{}: ranks on {} do not find there what rank 0 writes: name a file in a folder that all hosts share "

@@ -56,10 +56,7 @@ void on_first_rank(MPI_Comm comm, Work&& work) {
 
 /// The hosts of all ranks without duplicates, in rank order. Collective.
 std::string host_names(MPI_Comm comm) {
-  std::vector<std::string> names;
-  for (std::string& name : everywhere(host_name(), comm))
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
-  return fmt::format("{}", fmt::join(names, " "));
+  return fmt::format("{}", fmt::join(distinct_everywhere(host_name(), comm), " "));
 }
 
 /// Why a task marked as complete is run again.

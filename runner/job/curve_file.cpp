@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -13,16 +12,12 @@
 #include "runner/job/strict_json.hpp"
 #include "runner/text/key_path.hpp"
 #include "runner/text/shortened.hpp"
+#include "runner/text/words.hpp"
 
 namespace rodsweep {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 /// The fields of each line, without comments and quotes.
 class Lines {

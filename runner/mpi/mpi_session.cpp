@@ -77,6 +77,13 @@ std::vector<std::string> everywhere(const std::string& text, MPI_Comm comm) {
   return texts;
 }
 
+std::vector<std::string> distinct_everywhere(const std::string& text, MPI_Comm comm) {
+  std::vector<std::string> texts;
+  for (std::string& each : everywhere(text, comm))
+    if (!each.empty() && std::find(texts.begin(), texts.end(), each) == texts.end()) texts.push_back(std::move(each));
+  return texts;
+}
+
 void collectively(MPI_Comm comm, const std::function<void()>& part) {
   int rank = 0, size = 1;
   check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");

@@ -1,16 +1,11 @@
 #include "runner/text/nearest.hpp"
 
 #include <algorithm>
-#include <cctype>
+
+#include "runner/text/words.hpp"
 
 namespace rodsweep {
 namespace {
-
-std::string lower(std::string_view word) {
-  std::string result(word);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
@@ -32,12 +27,12 @@ std::size_t distance(const std::string& a, const std::string& b) {
 std::string nearest(std::string_view word, const std::vector<std::string>& known) {
   constexpr std::size_t longest = 64;  // bounds the table above
   if (word.empty() || word.size() > longest) return {};
-  const std::string typed = lower(word);
+  const std::string typed = lower_case(std::string(word));
   const std::size_t limit = std::max<std::size_t>(1, typed.size() / 3);
   std::string best, containing;
   std::size_t best_distance = limit + 1;
   for (const std::string& candidate : known) {
-    const std::string target = lower(candidate);
+    const std::string target = lower_case(candidate);
     const std::size_t d = distance(typed, target);
     if (d < best_distance) {
       best_distance = d;

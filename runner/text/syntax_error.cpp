@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "runner/text/words.hpp"
+
 namespace rodsweep {
 namespace {
 
@@ -79,9 +81,8 @@ std::string wrong_token_text(const std::string& text, std::size_t at, const std:
   if (c == '\'') return "strings and keys must be in double quotes";
   std::size_t end = at;
   while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) ++end;
-  std::string word = text.substr(at, std::min<std::size_t>(end - at, 20));
+  const std::string word = lower_case(text.substr(at, std::min<std::size_t>(end - at, 20)));
   if (word.empty() || problem.find("invalid literal") == std::string::npos) return problem;
-  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char letter) { return std::tolower(letter); });
   if (word == "true" || word == "false") return fmt::format("{} must be in lower case", word);
   if (word == "none") return "use null instead of none";
   if (word == "nan" || word == "inf" || word == "infinity") return "JSON does not allow NaN or infinity";
