@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// Within the bounds, and plausible.
 Json example_number(const Key& key) {
-  if (key.name == "segments") return 32;  // enough for a knot
+  if (key.name == "segments") return 8;  // enough for a ring
   const double wanted = key.plausible && key.plausible->least > 0
                             ? std::sqrt(key.plausible->least * key.plausible->most)
                             : (key.kind == Key::Kind::integer ? 2 : 1);
@@ -161,6 +161,7 @@ Json sweep_of(Json scene, Json solve, Json guesses) {
 /// With contact, which obstacles need.
 Json scene_of(const std::string& type) {
   Json scene = example_object(part("scene"), type);
+  if (type == "knot") scene["segments"] = 32;
   scene["contact"] = Json::object();
   return scene;
 }
@@ -301,7 +302,11 @@ std::string objection(const Json& values) {
 std::vector<Json> accepted(const KeyPlace& at, std::size_t count) {
   std::vector<Json> found;
   std::vector<Json> values = candidates(at.key);
-  if (const Json::json_pointer here(at.pointer); at.job.contains(here)) values.insert(values.begin(), at.job[here]);
+  if (const Json::json_pointer here(at.pointer); at.job.contains(here)) {
+    const Json& own = at.job[here];
+    if (own.is_number_integer()) values.insert(values.begin(), own.get<std::int64_t>() + 1);
+    values.insert(values.begin(), own);
+  }
   for (const Json& value : values)
     if (found.size() < count && std::find(found.begin(), found.end(), value) == found.end() &&
         objection(at.with(value)).empty())
