@@ -41,6 +41,10 @@ void log_segments(const Scene& scene, TaskRecord& record) {
   }
 }
 
+/// The turns in a step [rad] up to which motions were found right: of a body whose spin term is explicit, and of a rod
+/// that rolls.
+constexpr double most_tumbled = 1, most_rolled = 7;
+
 }  // namespace
 
 void end_late(const TaskSpec& spec, TaskRecord& record, const std::string& where) {
@@ -56,7 +60,8 @@ SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord&
     : task_(task), spec_(spec), record_(record) {
   for (const Rod& rod : scene.rods) {
     initial_length_ += rod_length(rod);
-    observed_.push_back({Linearization(rod), MomentumBalance(rod)});
+    observed_.push_back({Linearization(rod), MomentumBalance(rod), {}});
+    linearize(rod, observed_.back().at);
   }
   record_.outcome = TaskOutcome::ok;
   record_.tasks.steps_done[0] = 0;
@@ -68,11 +73,12 @@ SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord&
 
 /// Writes the observables of a finished step to row `step` of /steps.
 void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepReport& report) {
-  double length = 0, gap = 0, residual = 0, imbalance = 0, kinetic = 0, potential = 0, elastic = 0;
+  double length = 0, gap = 0, residual = 0, imbalance = 0, kinetic = 0, potential = 0, elastic = 0, open = 0;
   Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
   for (std::size_t r = 0; r < scene.rods.size(); ++r) {
     const Rod& rod = scene.rods[r];
-    auto& [at, balance] = observed_[r];
+    auto& [at, balance, before] = observed_[r];
+    before = at.constraint;
     linearize(rod, at);
     balance_momentum(rod, at, balance);
     length += rod_length(rod);
@@ -82,6 +88,7 @@ void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepRep
     kinetic += kinetic_energy(rod);
     potential += gravitational_energy(rod, scene.gravity_at(scene.time_s));
     elastic += elastic_energy(rod, at);
+    open += gap_energy(rod, at);
     momentum += linear_momentum(rod);
     spin += angular_momentum(rod);
   }
@@ -91,6 +98,7 @@ void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepRep
   record_.steps.kinetic_energy_j[step] = kinetic;
   record_.steps.potential_energy_j[step] = potential;
   record_.steps.elastic_energy_j[step] = elastic;
+  record_.steps.gap_energy_j[step] = open;
   for (std::size_t i = 0; i < 3; ++i) {
     record_.steps.momentum_kg_m_s(step, i) = momentum[static_cast<Eigen::Index>(i)];
     record_.steps.angular_momentum_kg_m2_s(step, i) = spin[static_cast<Eigen::Index>(i)];
@@ -135,7 +143,47 @@ bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& 
          "a joint is open by " + std::to_string(gap) + " joint lengths");
     return false;
   }
+  if (const std::string joint = slipped_joint(); !joint.empty()) {
+    fail(TaskOutcome::torn, step, joint + " turned past half a turn and lost its bending and twist: use more segments");
+    return false;
+  }
+  note_turns(scene);
+  if (step + 1 == task_.steps) warn_of_turns();
   return true;
+}
+
+/// A joint whose rotation from rest passed half a turn in the last step, where the torque changes its sign; "" if none.
+/// With d = (w, C / 2), w >= 0, before and after: the shorter way between them is the one through half a turn if the
+/// product of the two is negative.
+std::string SimulationLog::slipped_joint() const {
+  const auto w = [](const Vector3& c) { return std::sqrt(std::max(0.0, 1 - c.squaredNorm() / 4)); };
+  for (std::size_t r = 0; r < observed_.size(); ++r) {
+    const VectorX &after = observed_[r].at.constraint, &before = observed_[r].before;
+    for (Eigen::Index row = 3; row < after.size(); row += 6) {
+      const Vector3 c = after.segment<3>(row), old = before.segment<3>(row);
+      if (w(c) * w(old) + c.dot(old) / 4 < 0) return fmt::format("joint {} of rod {}", row / 6, r);
+    }
+  }
+  return "";
+}
+
+void SimulationLog::note_turns(const Scene& scene) {
+  for (const Rod& rod : scene.rods)
+    for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+      const Vector3 turn = spec_.time.step_s * rod.angular_velocity[s], axis = rod.orientation[s] * Vector3::UnitZ();
+      tumbled_ = std::max(tumbled_, turn.cross(axis).norm());
+      if (scene.contact) rolled_ = std::max(rolled_, std::abs(turn.dot(axis)));
+    }
+}
+
+void SimulationLog::warn_of_turns() {
+  const double excess = std::max(tumbled_ / most_tumbled, rolled_ / most_rolled);
+  if (record_.outcome != TaskOutcome::ok || !(excess > 1)) return;
+  const bool rolls = rolled_ / most_rolled == excess;
+  record_.message =
+      fmt::format("a segment turned by {:.2g} rad {} in a step; above {:g} its motion is wrong: use a step_s of {:.1g}",
+                  rolls ? rolled_ : tumbled_, rolls ? "about its axis, in contact" : "across its axis",
+                  rolls ? most_rolled : most_tumbled, spec_.time.step_s / excess);
 }
 
 void SimulationLog::fail(TaskOutcome outcome, int step, const std::string& why) {

@@ -122,7 +122,11 @@ std::vector<Column> all_columns() {
       column<&R::steps, &Steps::potential_energy_j>("/steps/potential_energy_j", Rows::step, none, "J",
                                                     "gravitational energy, zero at the origin"),
       column<&R::steps, &Steps::elastic_energy_j>("/steps/elastic_energy_j", Rows::step, none, "J",
-                                                  "energy stored in the joints"),
+                                                  "energy of bending, twist and, where joints have a stretch "
+                                                  "stiffness, stretch and shear"),
+      column<&R::steps, &Steps::gap_energy_j>(
+          "/steps/gap_energy_j", Rows::step, none, "J",
+          "what open joints of inextensible rods would release: a residual of the method, no energy of the rods"),
       column<&R::steps, &Steps::momentum_kg_m_s>("/steps/momentum_kg_m_s", Rows::step, xyz, "kg m/s",
                                                  "linear momentum of the dynamic segments"),
       column<&R::steps, &Steps::angular_momentum_kg_m2_s>("/steps/angular_momentum_kg_m2_s", Rows::step, xyz,

@@ -87,7 +87,7 @@ struct TaskRecord {
   } solves;
 
   struct Steps {  // [step ...]
-    Cells<double> time_s, length_drift, joint_gap, kinetic_energy_j, potential_energy_j, elastic_energy_j;
+    Cells<double> time_s, length_drift, joint_gap, kinetic_energy_j, potential_energy_j, elastic_energy_j, gap_energy_j;
     Cells<double> momentum_kg_m_s, angular_momentum_kg_m2_s;  ///< [.., 3]
     Cells<std::int16_t> newton_iterations;
     Cells<std::int32_t> cg_iterations, products;  ///< of the solves that advanced the rods

@@ -64,9 +64,10 @@ struct Segment {
 struct Joint {
   int a, b;
   Vector3 arm_a, arm_b;
-  double length;                ///< l [m]
-  Vector6 compliance;           ///< alpha [1/J]: across the rod (2), along it, bending about x and y, twisting
-  Quaternion frame_a, frame_b;  ///< p_a, p_b
+  double length;                 ///< l [m]
+  Vector6 compliance;            ///< alpha [1/J]: across the rod (2), along it, bending about x and y, twisting
+  Quaternion frame_a, frame_b;   ///< p_a, p_b
+  bool is_inextensible = false;  ///< the compliance of its stretch-shear rows is no material's: it bounds their opening
 
   Quaternion rest() const { return frame_a * frame_b.conjugate(); }  ///< d0
   bool is_kinked() const;                                            ///< not p_a = p_b = 1

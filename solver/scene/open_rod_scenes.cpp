@@ -28,7 +28,7 @@ void check_tip_motion(const RodScene& p) {
     throw SceneError("tip_motion turns the end by " + std::to_string(turned) +
                      " degrees; must be at most 90 for each of " + std::to_string(joints) +
                      " joints: use more segments");
-  if (p.stretch == Stretch::physical || p.stretch_compliance_per_j) return;
+  if (p.may_stretch()) return;
   const int held = p.clamp == Clamp::segment ? 1 : 0, n = p.segments;
   const Vector3 from = p.vertex_m(held), end = p.vertex_m(n), arm = p.vertex_m(n - held) - end;
   const double length = (n - 2 * held) * (p.vertex_m(1) - p.vertex_m(0)).norm();

@@ -43,7 +43,9 @@ Scene build_scene(const SceneSpec& spec) {
   scene.contact = p.contact;
   scene.obstacles = p.obstacles;
   std::visit([&scene](const auto& rods) { rods.build(scene); }, spec);
-  add_prescribed(p.prescribed, scene, p.stretch == Stretch::physical || p.stretch_compliance_per_j);
+  add_prescribed(p.prescribed, scene, p.may_stretch());
+  for (Rod& rod : scene.rods)
+    for (Joint& joint : rod.joints) joint.is_inextensible = !p.may_stretch();
   return scene;
 }
 

@@ -76,6 +76,7 @@ struct RodParameters {
   std::optional<ContactSettings> contact;
   std::vector<Obstacle> obstacles;  ///< in addition to a scene's own floor
   Prescribed prescribed;
+  bool may_stretch() const { return stretch == Stretch::physical || stretch_compliance_per_j; }
 };
 
 /// The end of a rod moves by a displacement, and by a rotation about an axis in the world, in a time; then it rests.

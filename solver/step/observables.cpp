@@ -34,6 +34,17 @@ Linearization linearized(const Rod& rod) {
   return at;
 }
 
+/// Of rows first to end - 1 of a joint.
+double stored_energy(const Rod& rod, const Linearization& at, std::size_t joint, int first, int end) {
+  double energy = 0;
+  for (int row = first; row < end; ++row) {
+    const double c = at.constraint[static_cast<Eigen::Index>(6 * joint) + row];
+    const double alpha = rod.joints[joint].compliance[row];
+    if (alpha > 0) energy += c * c / alpha / 2;
+  }
+  return energy;
+}
+
 }  // namespace
 
 double rod_length(const Rod& rod) {
@@ -95,11 +106,16 @@ double elastic_energy(const Rod& rod) { return elastic_energy(rod, linearized(ro
 double elastic_energy(const Rod& rod, const Linearization& at) {
   double energy = 0;
   for (std::size_t k = 0; k < rod.joints.size(); ++k)
-    for (int row = 0; row < 6; ++row) {
-      const double c = at.constraint[static_cast<Eigen::Index>(6 * k) + row];
-      const double alpha = rod.joints[k].compliance[row];
-      if (alpha > 0) energy += c * c / alpha / 2;
-    }
+    energy += stored_energy(rod, at, k, rod.joints[k].is_inextensible ? 3 : 0, 6);
+  return energy;
+}
+
+double gap_energy(const Rod& rod) { return gap_energy(rod, linearized(rod)); }
+
+double gap_energy(const Rod& rod, const Linearization& at) {
+  double energy = 0;
+  for (std::size_t k = 0; k < rod.joints.size(); ++k)
+    if (rod.joints[k].is_inextensible) energy += stored_energy(rod, at, k, 0, 3);
   return energy;
 }
 

@@ -22,9 +22,14 @@ double newton_residual(const Rod& rod, const Linearization& at, double constrain
 /// The largest imbalance of forces on a segment, relative to the largest force of a joint (MomentumBalance::residual).
 double momentum_residual(const Rod& rod);
 
-/// Sum over joints of C^T alpha^-1 C / 2 [J]; rows of zero compliance store no energy.
+/// Sum over joints of C^T alpha^-1 C / 2 [J] of bending, twist and, but for inextensible joints, stretch and shear; rows
+/// of zero compliance store no energy.
 double elastic_energy(const Rod& rod);
 double elastic_energy(const Rod& rod, const Linearization& at);
+
+/// The same of the stretch-shear rows of inextensible joints: no energy of the rod, but what its open joints can release.
+double gap_energy(const Rod& rod);
+double gap_energy(const Rod& rod, const Linearization& at);
 
 /// m |v|^2 / 2 + w.I w / 2 over the dynamic segments [J].
 double kinetic_energy(const Rod& rod);

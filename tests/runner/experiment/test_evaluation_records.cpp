@@ -130,6 +130,7 @@ TEST_CASE("steps and frames of a falling rod have its times, energies, length an
     CHECK(std::abs(r.steps.length_drift[step]) < 1e-3);
     CHECK(r.steps.kinetic_energy_j[step] > 0);
     CHECK(r.steps.elastic_energy_j[step] > 0);
+    CHECK(r.steps.gap_energy_j[step] < 1e-3 * r.steps.elastic_energy_j[step]);
     CHECK(r.steps.potential_energy_j[step] < 0);
     CHECK(r.steps.newton_residual[step] > 0);
     CHECK(r.steps.newton_residual[step] < 1e-9);
@@ -185,6 +186,38 @@ TEST_CASE("contacts and the deepest penetration are recorded where rods touch, a
   CHECK(touching.steps.contact_residual.back() < 1e-2);
   job["scene"]["contact"] = "none";
   CHECK(evaluated(job).steps.contacts.empty());
+}
+
+/// A free rod of two segments that a torque turns about an axis.
+TaskRecord turned_by(const Json& torque_nm, double youngs_modulus_pa, bool contact = false, double step_s = 0.02) {
+  Json job = five_steps(R"(["zero"])");
+  job["scene"].update({{"segments", 2},
+                       {"clamp", "free"},
+                       {"length_m", 1},
+                       {"initial_angle_deg", 0},
+                       {"gravity_m_s2", {0, 0, 0}},
+                       {"youngs_modulus_pa", youngs_modulus_pa},
+                       {"torsion_modulus_pa", youngs_modulus_pa},
+                       {"tip_torque_nm", torque_nm}});
+  job["time"]["step_s"] = step_s;
+  if (contact) job["scene"]["contact"] = Json::object();
+  return evaluated(job);
+}
+
+TEST_CASE("a joint that turns past half a turn ends the task, also if it stays closed") {
+  const TaskRecord slipped = turned_by({100, 0, 0}, 1e6, false, 0.005);  // it holds GJ / l = 20 Nm
+  CHECK(slipped.outcome == TaskOutcome::torn);
+  CHECK_THAT(slipped.message, Catch::Matchers::Contains("joint 0 of rod 0 turned past half a turn"));
+  CHECK(slipped.steps.joint_gap[static_cast<std::size_t>(slipped.tasks.steps_done[0] - 1)] < 1e-6);
+}
+
+TEST_CASE("a task whose segments turn too far in a step says so") {
+  CHECK(turned_by({0, 30, 0}, 1e10).message.empty());
+  const TaskRecord tumbling = turned_by({0, 600, 0}, 1e10);
+  CHECK(tumbling.outcome == TaskOutcome::ok);
+  CHECK_THAT(tumbling.message, Catch::Matchers::Contains("rad across its axis in a step; above 1 its motion is wrong"));
+  CHECK(turned_by({60, 0, 0}, 1e10).message.empty());  // about its axis
+  CHECK_THAT(turned_by({60, 0, 0}, 1e10, true).message, Catch::Matchers::Contains("rad about its axis, in contact"));
 }
 
 TEST_CASE("a rod that blows up or is torn and a task out of time end with what was done") {

@@ -74,14 +74,20 @@ TEST_CASE("elastic energy of a uniformly bent rod is EI kappa^2 / 2 times the le
   CHECK(elastic_energy(straight(5, Clamp::wall)) < 1e-20);
 }
 
-TEST_CASE("elastic energy of twist is GJ phi^2 / 2 l, of stretch (gap / l)^2 / 2 alpha") {
+TEST_CASE("elastic energy of twist is GJ phi^2 / 2 l, of stretch (gap / l)^2 / 2 alpha, of inextensible joints none") {
   Rod rod = straight(2, Clamp::free);
   rod.orientation[1] = rod.orientation[1] * Quaternion(Eigen::AngleAxisd(1e-3, Vector3::UnitZ()));
   const double torsion = 1e6 * pi * std::pow(0.05, 4) / 2;
   CHECK(elastic_energy(rod) == Approx(torsion * 1e-6 / 2).epsilon(1e-6));  // l = 1
   rod = straight(2, Clamp::free);
   rod.position[1] += Vector3(3e-4, 0, 4e-4);
-  CHECK(elastic_energy(rod) == Approx(25e-8 / rod.joints[0].compliance[0] / 2).epsilon(1e-9));
+  const double open = 25e-8 / rod.joints[0].compliance[0] / 2;
+  rod.joints[0].is_inextensible = true;
+  CHECK(elastic_energy(rod) < 1e-20);
+  CHECK(gap_energy(rod) == Approx(open).epsilon(1e-9));
+  rod.joints[0].is_inextensible = false;
+  CHECK(elastic_energy(rod) == Approx(open).epsilon(1e-9));
+  CHECK(gap_energy(rod) == 0);
   rod.joints[0].compliance.head<3>().setZero();
   CHECK(elastic_energy(rod) < 1e-20);  // a rigid row stores nothing
 }

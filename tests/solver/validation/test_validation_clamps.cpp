@@ -1,5 +1,6 @@
-// A straight rod held at both ends: a moving clamp turns one end, for pure bending and pure torsion. Both ends are
-// static segments. After the turn the rod relaxes (simulation.hpp). No gravity.
+// A straight rod held at both ends, of which one moves: pure bending, pure torsion, helices. Both ends are static
+// segments. After the motion the rod relaxes (simulation.hpp). No gravity.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -84,6 +85,46 @@ TEST_CASE("A rod twisted by its end has uniform twist and the torque of its join
     CHECK((on_b + torque * Vector3::UnitZ()).norm() < 1e-8 * torque);  // in the frame of b
     CHECK(-on_b.z() ==
           Approx(torsion_modulus * second_moment * angle / free_length).epsilon(joint_angle * joint_angle));
+  }
+}
+
+/// The largest distance of a joint from the helix that a straight rod of 1 m along x becomes whose ends are prescribed:
+/// the tangent at s is x turned by s w. Each such helix is an equilibrium (Kirchhoff 1859).
+double distance_from_helix(int segments, const Vector3& w) {
+  const double rate = w.norm();
+  const Vector3 axis = w / rate, x = Vector3::UnitX();
+  const auto point = [&](double s) -> Vector3 {  // the integral of Rodrigues' formula
+    return axis.dot(x) * s * axis + std::sin(rate * s) / rate * (x - axis.dot(x) * axis) +
+           (1 - std::cos(rate * s)) / rate * axis.cross(x);
+  };
+  BendingRod p;
+  p.clamp = Clamp::wall;
+  p.segments = segments;
+  p.length_m = 1;
+  p.radius_m = 0.01;
+  p.youngs_modulus_pa = 1e7;
+  p.torsion_modulus_pa = 4e6;
+  p.gravity_m_s2.setZero();
+  p.tip_motion = TipMotion{point(1) - x, w * 180 / pi, 2};
+  Simulation simulation(build_scene(p), 0.05, 30, 1e-8);
+  for (int i = 0; i < 40; ++i) simulation.relax_once();
+  simulation.relax();
+  double farthest = 0;
+  for (int i = 1; i < segments; ++i) {
+    const auto& rod = simulation.rod();
+    const std::size_t s = static_cast<std::size_t>(i);  // behind the wall
+    const Vector3 joint = rod.position[s] + rod.segments[s].length_m / 2 * director(rod.orientation[s]);
+    farthest = std::max(farthest, (joint - point(static_cast<double>(i) / segments)).norm());
+  }
+  return farthest;
+}
+
+TEST_CASE("A straight rod between two ends prescribed in space becomes a helix, to second order") {
+  for (const Vector3& w : {Vector3(1, 0, 1.5), Vector3(-0.5, 2, 0.5)}) {
+    const double coarse = distance_from_helix(20, w), fine = distance_from_helix(40, w);
+    CAPTURE(coarse, fine);
+    CHECK(coarse < 1e-3);
+    CHECK(std::log2(coarse / fine) == Approx(2).margin(0.15));
   }
 }
 
