@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """CG ratios of networks that differ from a base network in one training setting each.
 
-The results file is a sweep whose learned guesses are these networks, as `make ablation` trains them. MODELS is the
+The results file is a sweep whose learned guesses are these networks, as `jobs/studies.py ablation` trains them. MODELS is the
 folder of their model files, named like the guesses. Guesses without a model file go to the end of the table. --base
 names the base network. The changed settings are read from the jobs in the model files.
 

@@ -9,7 +9,7 @@ Writes into a folder:
   README.md        what is in it
   SHA256SUMS       checksums of all files
 
-Files that are there are kept, so a stopped run goes on. All tasks of the job must be done; `make benchmark-data` runs
+Files that are there are kept, so a stopped run goes on. All tasks of the job must be done; `jobs/studies.py benchmark` runs
 it first. The card names failed tasks.
 """
 
@@ -33,7 +33,7 @@ EXAMPLES = """examples:
 PRECONDITIONER, TUNING = "solve.preconditioner", 2      # samples for tuning
 CARD = """# Linear systems of Cosserat rods
 {systems} systems A x = b of {simulations} simulations: {scenes}, steps of {step_s} s, the
-first Newton iteration of each. Made by `make benchmark-data` of rodsweep ({revision}), jobs/benchmark.json. MIT
+first Newton iteration of each. Made by `jobs/studies.py benchmark` of rodsweep ({revision}), jobs/benchmark.json. MIT
 licence.{failed}
 
 - `SCENE-JOINTS-tuning-K.h5` to choose settings and to train on, `SCENE-JOINTS-test-K.h5` to report.

@@ -3,7 +3,7 @@
 
 Without --movie, the script writes a PNG of the last frame, of the frames of --frame, or of every N-th with --every N.
 The job must record frames (record.trajectory_every); if not, `rodsweep rerun FILE TASK` makes a file of one task that
-has them. POV-Ray draws the pictures; --movie mp4 needs ffmpeg. `make pictures` installs both. The camera shows all
+has them. POV-Ray draws the pictures; --movie mp4 needs ffmpeg. `jobs/studies.py pictures` installs both. The camera shows all
 segments in all drawn frames. The script prints the paths and does not replace existing files without --force.
 """
 

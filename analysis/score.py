@@ -88,7 +88,7 @@ def main():
 def with_guess(options, jobs):
     """The scenes of these jobs with a guess in Python: {title: rows_of()}, its results in results/."""
     if not jobs:
-        raise KeyNotFound(f"there are no jobs {JOBS}: `make score` writes them, or give some")
+        raise KeyNotFound(f"there are no jobs {JOBS}: `jobs/studies.py score` writes them, or give some")
     guess, scenes = options.files[0], {}
     entry = {"python": {"file": os.path.abspath(guess)}}
     if options.inputs:

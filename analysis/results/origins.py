@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What made the tables of this folder: origins.txt, one row per results file.
 
-    analysis/results/origins.py FILE...    adds or replaces the rows of results files (draw.sh calls it)
+    analysis/results/origins.py FILE...    adds or replaces the rows of results files (jobs/studies.py calls it)
     analysis/results/origins.py            names the tables that are older than their job or models; exit code 1 if any is
 
 A row has the study's name, the revision of the program, the day of its first run, its minutes, instructions and

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Trains variants of a network with one setting changed at a time: `make variants` and `make ablation` call it.
+"""Trains variants of a network with one setting changed at a time: `jobs/studies.py variants` and `jobs/studies.py ablation` call it.
 
     analysis/results/variants.py PROGRAM RESULTS FAMILY
 

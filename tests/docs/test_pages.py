@@ -14,9 +14,10 @@ import jsonschema
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 TOOLS = os.path.join(ROOT, "docs", "tools")
-sys.path.insert(0, TOOLS)
+sys.path[:0] = TOOLS, os.path.join(ROOT, "jobs")
 import keys  # noqa: E402
 import links  # noqa: E402
+import studies  # noqa: E402
 
 NAV = "site_name: x\nnav:\n  - Start: README.md\n  - More:\n      - A page: docs/page.md\nextra: {}\n"
 PAGE = """# A page of `two_words`, once … more
@@ -213,16 +214,19 @@ class Jobs(unittest.TestCase):
                     found += 1
         self.assertGreaterEqual(found, 4)
 
-    def test_the_page_names_all_sweeps_and_those_that_make_studies_runs(self):
+    def test_the_page_names_all_sweeps_and_those_of_the_studies(self):
         """Data sets and trainings are in other tables."""
-        made = re.search(r"^studies = ((?:.*\\\n)*.*)", keys.read(os.path.join(ROOT, "Makefile")), re.M)[1].split()
+        made = [os.path.basename(path)[:-3] for path in studies.outputs(*studies.STUDIES.values())]
         paths = glob.glob(os.path.join(ROOT, "jobs", "**", "*.json"), recursive=True)
         kinds = {os.path.basename(path)[:-5]: json.loads(keys.read(path)).get("kind", "sweep")
                  for path in paths if os.path.basename(path) != "schema.json"}
         sweeps = {name for name, kind in kinds.items() if kind == "sweep"}
         section = keys.read(os.path.join(ROOT, "docs", "jobs.md")).partition("## The jobs that come along")[2]
-        studies, others = (self.named(table, sweeps) for table in re.findall(r"(?:^\|.*\n)+", section, re.M))
-        self.assertEqual(sorted(studies), sorted(sweeps & set(made)))
+        tables = re.findall(r"(?:^\|.*\n)+", section, re.M)
+        for _, _, name, question, _ in (row.split("|") for row in tables[0].splitlines()[2:]):
+            self.assertEqual(question.strip(), studies.STUDIES[name.strip(" `")].question)
+        first, others = (self.named(table, sweeps) for table in tables)
+        self.assertEqual(sorted(first), sorted(sweeps & set(made)))
         self.assertEqual(sorted(others), sorted(sweeps - set(made)))
 
     @staticmethod

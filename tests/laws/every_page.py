@@ -41,7 +41,7 @@ LEFT_OUT = {
     "docs/jobs.md": {"build/rodsweep run jobs/networks/bending_data.json": "720 MB"},
     "docs/models.md": {"build/rodsweep run jobs/networks/": "minutes, gigabytes"},
     "docs/python.md": {"analysis/export.py results/demo.h5 --level solves -o solves.parquet": "needs pyarrow"},
-    "docs/report.md": {"make ": "builds, minutes"},
+    "docs/report.md": {"make ": "builds, minutes", "jobs/studies.py ": "writes into the repository"},
     "docs/running.md": {"sbatch ": "needs Slurm: command/slurm_script and test-cluster run it"},
     "docs/speed.md": {"make bench": "builds, an hour"},
 }

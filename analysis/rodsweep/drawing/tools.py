@@ -13,4 +13,4 @@ def needed(program, purpose):
     """Raises ToolError if a program is missing. Its Debian package has the same name."""
     if shutil.which(program) is None:
         raise ToolError(f"{program} is not on the PATH ({purpose}): install the Debian package {program} "
-                        "(make pictures)")
+                        "(jobs/studies.py pictures)")
