@@ -18,7 +18,7 @@ except ModuleNotFoundError as error:
     raise ImportError(f"rodsweep needs {error.name}: apt-get install python3-h5py python3-scipy, or pip install h5py scipy",
                       name=error.name) from None
 
-__version__ = "1.0.0"    # same as in CMakeLists.txt (tested)
+__version__ = "2.0.0"    # that of CMakeLists.txt (tested)
 __all__ = ["Job", "JobError", "JobWarning", "Plan", "Results", "Systems", "UserError", "grid", "integer", "log_uniform",
            "open", "systems", "uniform", "zip"]
 

@@ -61,7 +61,7 @@ std::string typed(int argc, const char* const* argv) {
   return line;
 }
 
-/// "rodsweep 1.0.0 (revision ...)", then one line per library.
+/// "rodsweep 2.0.0 (revision ...)", then one line per library.
 std::string version_text() {
   std::string text = library_versions() + '\n';
   for (std::size_t at = text.find("; "); at != std::string::npos; at = text.find("; ", at)) text.replace(at, 2, "\n  ");

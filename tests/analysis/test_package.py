@@ -1,4 +1,4 @@
-"""analysis/pyproject.toml: it includes all files, has the program's version, and installs with pip."""
+"""analysis/pyproject.toml: it includes all files and installs with pip."""
 
 import importlib.util
 import os
@@ -29,10 +29,6 @@ class Package(unittest.TestCase):
         self.assertEqual(set(self.project["project"]["scripts"].values()), {"rodsweep.launch:run"})
         folders = {".".join(path.parent.relative_to(ROOT).parts) for path in ROOT.glob("rodsweep/**/__init__.py")}
         self.assertEqual(set(self.project["tool"]["setuptools"]["packages"]), folders | {"rodsweep.scripts"})
-
-    def test_the_version_is_that_of_the_program(self):
-        lists = (ROOT.parent / "CMakeLists.txt").read_text(encoding="utf-8")
-        self.assertEqual(rodsweep.__version__, re.search(r"project\(rodsweep VERSION ([\d.]+)", lists)[1])
 
     @unittest.skipUnless(all(map(importlib.util.find_spec, TOOLS)), f"one of {', '.join(TOOLS)} is not installed")
     def test_what_pip_installs_as_the_page_says_works_away_from_here(self):

@@ -129,9 +129,12 @@ class Images(unittest.TestCase):
 
 class Release(unittest.TestCase):
     def test_the_version_is_one(self):
+        """In CMakeLists.txt, the Python package, the citation and the changelog, of which the last two have its date."""
         version = re.search(r"project\(rodsweep VERSION ([\d.]+)", text_of("CMakeLists.txt"))[1]
-        self.assertEqual(yaml.safe_load(text_of("CITATION.cff"))["version"], version)
-        self.assertEqual(re.search(r"^## \[([\d.]+)\]", text_of("CHANGELOG.md"), re.M)[1], version)
+        self.assertIn(f'__version__ = "{version}"', text_of("analysis/rodsweep/__init__.py"))
+        citation, last = yaml.safe_load(text_of("CITATION.cff")), re.search(r"^## \[(.+)\] - (.+)$", text_of("CHANGELOG.md"), re.M)
+        self.assertEqual((citation["version"], str(citation.get("date-released", "unreleased"))), (version, last[2]))
+        self.assertEqual(last[1], version)
 
     def test_the_citation_keeps_to_the_rules_of_its_format(self):
         """Schema 1.2.0: required keys, persons and entities, types, form of a DOI."""
