@@ -37,7 +37,7 @@ help:
 	@echo 'make build         build only, into $(BUILD)/'
 	@echo 'make sanitize      unit tests under the address and undefined-behaviour sanitizers, in $(BUILD)-sanitize/'
 	@echo 'make fuzz          look for jobs that crash their reader, FUZZ_SECONDS=$(FUZZ_SECONDS) (tests/fuzz/README.md)'
-	@echo 'make schema        refresh jobs/schema.json and docs/keys.md after a change of the keys of jobs'
+	@echo 'make schema        refresh jobs/schema.json, docs/keys.md and constants of the Python package after a change of keys or planned columns'
 	@echo 'make docs          write the pages with measured numbers (*.md.j2) anew, and all pages as a site, $(BUILD)/site/index.html'
 	@echo 'make format        clang-format the tree; make format-check only looks'
 	@echo 'make tidy          clang-tidy'
@@ -103,6 +103,7 @@ fuzz:
 
 schema: build
 	@$(BUILD)/rodsweep schema >$(BUILD)/schema.json && mv $(BUILD)/schema.json jobs/schema.json
+	@sed -n 's/^"x-files": //p' jobs/schema.json >analysis/rodsweep/reading/constants.json
 	@docs/tools/keys.py --update
 
 # Writes README.md, docs/claims.md and others from the templates beside them and the tables of analysis/results first.

@@ -97,7 +97,8 @@ class Results:
         `columns` are names of datasets in the file ("iterations") and of parameters, which become coordinates."""
         table = self._table(level)
         tests = [table.condition(text) for text in _listed(where)]
-        measured = [name for name, axes in table.shape.items() if "other" not in axes and table.shared(name) is None]
+        measured = [name for name, column in table.datasets.items()
+                    if "other" not in column.axes and table.shared(name) is None]
         of_tasks = [*tidy.OF_TASKS, *self.file.parameters]
         usual = [name for name in table.default_names() if name in self.file.parameters or name == "outcome"]
         if columns is not None:
@@ -185,7 +186,7 @@ class Results:
             coordinates[TOLERANCE] = (TOLERANCE, values, attributes)
         variables = {}
         for name, values in found.items():
-            axes = tuple(TOLERANCE if axis == "tolerance" else axis for axis in table.shape[name])
+            axes = tuple(TOLERANCE if axis == "tolerance" else axis for axis in table.datasets[name].axes)
             if axes == ("component",):
                 axes = (f"{name}_component",) if values.shape[1] != 3 else ("xyz",)
                 coordinates.update({"xyz": list("xyz")} if axes == ("xyz",) else {})

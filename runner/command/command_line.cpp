@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "runner/file/reader_constants.hpp"
 #include "runner/job/job_schema.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/text/nearest.hpp"
@@ -272,7 +273,7 @@ Command parse_command_line(int argc, const char* const* argv) {
 
   CLI::App* schema = app.add_subcommand("schema", "Prints the JSON Schema of jobs, for editors");
   schema->footer(schema_help);
-  schema->callback([&] { chosen = PrintedText{job_schema_text()}; });
+  schema->callback([&] { chosen = PrintedText{job_schema_text({{"x-files", reader_constants()}})}; });
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   const std::string first = argc > 1 ? argv[1] : "-";
   if (first[0] != '-' && std::none_of(commands.begin(), commands.end(),

@@ -235,8 +235,9 @@ class SchemaWriter {
 
 Json job_schema() { return SchemaWriter().write(); }
 
-std::string job_schema_text() {
-  const Json schema = job_schema();
+std::string job_schema_text(const Json& more) {
+  Json schema = job_schema();
+  schema.update(more);
   std::string text = "{";
   const auto entry = [&](const char* before, const std::string& name, const Json& value) {
     text += fmt::format("{}{}: {}", before, Json(name).dump(), value.dump());

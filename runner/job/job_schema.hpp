@@ -11,7 +11,8 @@ namespace rodsweep {
 
 nlohmann::ordered_json job_schema();
 
-/// The output of `rodsweep schema` and the content of jobs/schema.json: one line per key of the job and per definition.
-std::string job_schema_text();
+/// The output of `rodsweep schema` and the content of jobs/schema.json: a line per keyword, key of the job and definition.
+/// `more`: keywords that validators ignore.
+std::string job_schema_text(const nlohmann::ordered_json& more = nlohmann::ordered_json::object());
 
 }  // namespace rodsweep

@@ -287,11 +287,11 @@ class Steps(Folder):
     def test_largest_drift_and_gap_and_mean_newton_iterations(self):
         file, sims = self.simulations(pending=(3,))
         figures = measures.step_figures(file, sims)
-        np.testing.assert_allclose(figures.length_drift, 1e-3)  # planted negative: the magnitude is measured
-        np.testing.assert_allclose(figures.joint_gap, 2e-3)
-        np.testing.assert_allclose(figures.newton_iterations, 3)
-        self.assertTrue(np.isnan(figures.penetration).all())
-        self.assertTrue(np.isnan(figures.contact_residual).all())
+        np.testing.assert_allclose(figures["length_drift"], 1e-3)  # planted negative: the magnitude is measured
+        np.testing.assert_allclose(figures["joint_gap"], 2e-3)
+        np.testing.assert_allclose(figures["newton_iterations"], 3)
+        self.assertTrue(np.isnan(figures["penetration"]).all())
+        self.assertTrue(np.isnan(figures["contact_residual"]).all())
 
     def test_penetration_of_the_simulations_that_have_contact(self):
         plant = synthetic.Plant()
@@ -302,7 +302,7 @@ class Steps(Folder):
             h5["steps/penetration"][:5] = np.nan
 
         file = self.changed(pass_through)
-        found = measures.step_figures(file, sims).penetration
+        found = measures.step_figures(file, sims)["penetration"]
         self.assertTrue(np.isnan(found[0]).all())
         np.testing.assert_allclose(found[1:], 0.01)
 
@@ -310,7 +310,7 @@ class Steps(Folder):
         file, sims = self.simulations(method="direct")
         self.assertEqual(len(sims), 24)
         self.assertFalse(measures.has_guesses(file).any())
-        np.testing.assert_allclose(measures.step_figures(file, sims).joint_gap, 2e-3)
+        np.testing.assert_allclose(measures.step_figures(file, sims)["joint_gap"], 2e-3)
         self.assertTrue(np.isnan(timings.direct_times(file, sims)["direct_us"]).all())
 
 

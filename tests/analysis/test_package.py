@@ -13,7 +13,6 @@ import venv
 from pathlib import Path
 
 import synthetic
-import rodsweep
 
 ROOT = Path(synthetic.ANALYSIS)
 TOOLS = ("pip", "setuptools", "wheel")

@@ -161,6 +161,10 @@ class Schema(unittest.TestCase):
         self.assertEqual(said.returncode, 0)
         self.assertTrue(said.stdout == self.text, "jobs/schema.json is not what the program prints: run `make schema`")
 
+    def test_the_python_package_has_its_constants(self):
+        with open(os.path.join(JOBS, "..", "analysis", "rodsweep", "reading", "constants.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file), self.schema["x-files"], "run `make schema`")
+
     def test_every_job_of_the_project_validates(self):
         jobs = [path for path in glob.glob(os.path.join(JOBS, "**", "*.json"), recursive=True)
                 if not path.endswith("schema.json")]

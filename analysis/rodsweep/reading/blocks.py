@@ -66,7 +66,7 @@ def _measured(file, sims, title, panel, settings, index, newton):
 
 
 def _steps(file, sims):
-    figures = vars(measures.step_figures(file, sims))
+    figures = measures.step_figures(file, sims)
     there = {name: values for name, values in figures.items() if np.isfinite(values).any()}
     if not sims.closed_loop:  # one trajectory for all guesses
         there = {name: values[:, :1] for name, values in there.items()}

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import h5py
 import numpy as np
 
-from rodsweep.reading import intervals, unconverged
+from rodsweep.reading import constants, intervals, unconverged
 from rodsweep.reading.hdf5 import decoded
 
 BY = ("everything", "parameters")
@@ -22,9 +22,7 @@ BLOCK_ROWS = 1 << 16
 PLACES = {"/steps": ("first_step", "steps"), "/solves": ("first_solve", "solves"), "/systems": ("first_system", "systems"),
           "/systems/segments": ("first_system_segment", "system_segments"),
           "/systems/joints": ("first_system_joint", "system_joints")}
-OWN = ("/tasks/state", "/tasks/checksum", "/tasks/sample", "/tasks/point", "/tasks/own_guess", "/tasks/segments",
-       "/tasks/joints", "/tasks/message", "/tasks/outcome", "/tasks/frames", "/tasks/systems", "/tasks/steps",
-       "/tasks/solves", "/tasks/system_segments", "/tasks/system_joints")
+NOT_MEASURED = {f"/tasks/{name}" for name in ("state", "checksum", "message", "outcome", *constants.PLANNED)}
 FRAMES = ("/trajectories/position_m", "/trajectories/orientation")
 IGNORED_KEYS = ("name", "description", "$schema")
 
@@ -316,7 +314,7 @@ def _datasets(file):
     def add(name, item):
         path = "/" + name
         if isinstance(item, h5py.Dataset) and path.startswith(("/tasks/", "/steps/", "/solves/", "/systems/", *FRAMES)) and \
-                not path.startswith("/tasks/parameters/") and path not in OWN and not path.startswith("/tasks/first_"):
+                not path.startswith("/tasks/parameters/") and path not in NOT_MEASURED:
             found[path] = None
     file.h5.visititems(add)
     return found

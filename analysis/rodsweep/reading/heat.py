@@ -78,8 +78,7 @@ def per_simulation(shown, name, tolerances):
             raise KeyNotFound(f"{file.path} has no times of single solves (record.solves is \"summary\")")
         found = timings.speedups(timings.times(file, sims), newton)[name.split("-", 1)[1].replace("-", "_")]
         return found[..., None], np.zeros(found.shape + (1,))
-    steps = measures.step_figures(file, sims)
-    values = {"newton-residual": steps.newton_residual, "joint-gap": steps.joint_gap}[name]
+    values = measures.step_figures(file, sims)[name.replace("-", "_")]
     column = shown.guesses[0] if sims.closed_loop else 0
     return values[:, [column], None], none
 

@@ -1,6 +1,7 @@
 """Paths of input files in a parsed job, or in a part of it."""
 
-PATHS = ("curves", "data", "file", "inputs", "library", "model", "skeleton")    # their keys (tested)
+from rodsweep.reading.constants import PATHS
+
 NO_PATHS = {("knn", "inputs")}          # the same name elsewhere
 SWEEPS = ("grid", "zip")                # a path may stand in a list of these
 

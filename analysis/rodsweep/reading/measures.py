@@ -12,9 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rodsweep.reading import constants
+
 # Which solves count: those of the first Newton iteration of every step, or all.
 NEWTON = {"first": "first Newton iteration (j = 0)", "all": "all Newton iterations"}
-GAUSS_SEIDEL_ITERATIONS = 20    # the program's default of solve.iterations, which has no column if no task sets it
 
 
 def quotient(above, below):
@@ -105,7 +106,7 @@ def gauss_seidel_iterations(file, task):
     """Iterations of a step of a task with the method xpbd or pbd."""
     parameter = file.parameters.get("solve.iterations")
     given = parameter is not None and parameter.applies()[task]
-    return int(parameter.values[task]) if given else GAUSS_SEIDEL_ITERATIONS
+    return int(parameter.values[task]) if given else constants.GAUSS_SEIDEL_ITERATIONS
 
 
 def simulations(file, chosen, failed_too=False):
@@ -176,22 +177,12 @@ def solved(file, sims, newton):
     return (own > 0).any(axis=1) | ~np.isfinite(own).any(axis=1)
 
 
-@dataclass(frozen=True)
-class StepFigures:
-    """[simulation, guess] over the steps of a simulation; a paired sweep has one trajectory for all guesses."""
-    newton_iterations: np.ndarray   # mean per step
-    newton_residual: np.ndarray     # largest at the end of a step
-    momentum_residual: np.ndarray   # largest at the end of a step
-    length_drift: np.ndarray        # largest magnitude
-    joint_gap: np.ndarray           # largest
-    penetration: np.ndarray         # deepest; NaN without contact
-    contact_residual: np.ndarray    # largest at the end of a step; NaN without contact
-
-
 LARGEST = ("newton_residual", "momentum_residual", "length_drift", "joint_gap", "penetration", "contact_residual")
 
 
 def step_figures(file, sims):
+    """{column of /steps: [simulation, guess]}: the mean number of Newton iterations of a step, the largest magnitude of
+    others; NaN where it does not apply. A paired sweep has one trajectory for all guesses."""
     tasks = sims.tasks()
     wanted = {name: f"/steps/{name}" for name in ("newton_iterations", *LARGEST)}
     wanted = {name: path for name, path in wanted.items() if file.has(path)}
@@ -209,7 +200,7 @@ def step_figures(file, sims):
     def spread(values):
         return sims.gather(np.broadcast_to(values[:, None], (file.task_count, sims.task.shape[1])))
 
-    return StepFigures(spread(newton), **{name: spread(values) for name, values in largest.items()})
+    return {"newton_iterations": spread(newton), **{name: spread(values) for name, values in largest.items()}}
 
 
 def median_of_finite(values):

@@ -14,14 +14,14 @@ import warnings
 import h5py
 import numpy as np
 
+from rodsweep.reading.constants import SCHEMA_VERSION
 from rodsweep.reading.errors import IgnoredData, SweepFileError, listed, not_found
 from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, is_column, opened
 from rodsweep.reading.parameters import Parameter
 
-SCHEMA_VERSION = 2
 BLOCK_ROWS = 1 << 17
 ALL_BY = "rodsweep query FILE --columns help lists all"    # in the message for an unknown column of the tasks
-PLAN_COLUMNS = ("point", "sample", "own_guess", "first_step", "steps", "first_solve", "solves")
+LOADED = ("point", "sample", "own_guess", "first_step", "steps", "first_solve", "solves")    # of /tasks, as attributes
 
 
 class SweepFile:
@@ -68,7 +68,7 @@ class SweepFile:
         self.outcome = np.full(self.task_count, "pending", dtype="U32")
         self.outcome[self.complete] = decoded(self._required("/tasks/outcome")[:])[self.complete]
         self.ok = self.complete & (self.outcome == "ok")
-        for name in PLAN_COLUMNS:
+        for name in LOADED:
             setattr(self, name, self._required(f"/tasks/{name}")[:])
         self.guesses = [str(g) for g in decoded(self.h5["/axes/guess"][:])] if self.has("/axes/guess") else []
         self.tolerances = self.h5["/axes/tolerance"][:] if self.has("/axes/tolerance") else np.empty(0)

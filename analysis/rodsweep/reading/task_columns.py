@@ -14,16 +14,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rodsweep.reading import conditions, texts
+from rodsweep.reading import columns, conditions, constants, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
-from rodsweep.reading.hdf5 import as_text, decoded, is_column
+from rodsweep.reading.hdf5 import decoded
 from rodsweep.reading.sweepfile import ALL_BY
-
-OUTCOMES = ("pending", "ok", "diverged", "not_a_number", "indefinite", "iteration_limit", "timed_out", "error", "torn",
-            "crashed")
-PLANNED = ("point", "sample", "own_guess", "segments", "joints", "steps", "solves", "frames", "systems", "system_segments",
-           "system_joints")    # known before a task runs, like all first_...
-LEFT_OUT = ("state", "checksum")
 
 
 @dataclass(frozen=True)
@@ -139,9 +133,9 @@ class TaskColumns:
         self.columns[column.name] = column
 
     def _add_datasets(self, group):
-        for name, item in sorted(self.file.h5[group].items()) if group in self.file.h5 else ():
-            if is_column(item, self.file.task_count) and (group != "/tasks" or name not in LEFT_OUT):
-                self._add_dataset(name, f"{group}/{name}", item)
+        for name, column in columns.datasets(self.file, group, self.file.task_count).items():
+            if group != "/tasks" or name not in ("state", "checksum"):
+                self._add_dataset(name, column)
 
     def _add_parameter(self, parameter):
         """A vector is a text, and a number per component."""
@@ -152,19 +146,17 @@ class TaskColumns:
         for k, letter in enumerate("xyz") if parameter.values.shape[1:] == (3,) else ():
             self._add(replace(made, name=f"{made.name}.{letter}", index=(k,), numeric=True))
 
-    def _add_dataset(self, name, path, item):
-        made = TaskColumn(name, path, (), without_one(as_text(item.attrs.get("unit", ""))),
-                          as_text(item.attrs.get("meaning", "")), item.dtype.kind in "iuf", item.dtype.kind in "iu",
-                          result=name not in PLANNED and not name.startswith("first_"))
+    def _add_dataset(self, name, column):
+        made = TaskColumn(name, column.path, (), without_one(column.unit), column.meaning, column.dtype.kind in "iuf",
+                          column.dtype.kind in "iu", result=not column.planned)
         if name == "own_guess":
             made = replace(made, meaning="the guess that advances the rods; none: another method does", numeric=False,
                            whole=False)
-        guesses, shape = self.file.guesses, item.shape[1:]
-        if not shape:
+        if not column.axes:
             self._add(made)
-        elif guesses and shape in ((len(guesses),), (len(guesses), len(self.file.tolerances))):
-            by_tolerance = len(shape) == 2
-            for k, label in enumerate(guesses):
+        elif "guess" in column.axes:
+            by_tolerance = "tolerance" in column.axes
+            for k, label in enumerate(self.file.guesses):
                 self._add(replace(made, name=f"{name}.{label}", index=(k, self.headline) if by_tolerance else (k,),
                                   guess=label, by_tolerance=by_tolerance))
 
@@ -178,7 +170,7 @@ class _Known:
 
     def __init__(self, table):
         self.table = table
-        self.words = {"state": ("done", "pending"), "outcome": OUTCOMES, "own_guess": tuple(table.file.guesses)}
+        self.words = {"state": ("done", "pending"), "outcome": tuple(constants.OUTCOMES), "own_guess": tuple(table.file.guesses)}
 
     def __iter__(self):
         return iter(self.table.names)

@@ -12,15 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rodsweep.reading import conditions, measures, texts
+from rodsweep.reading import columns, conditions, measures, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
-from rodsweep.reading.hdf5 import as_text, decoded, is_column
+from rodsweep.reading.hdf5 import decoded
 from rodsweep.reading.task_columns import TaskColumns
 
 LEVELS = ("tasks", "solves", "steps")
 BLOCK_ROWS = 1 << 13
-INTERNAL = ("first_step", "first_solve", "first_frame_row", "first_segment_row", "first_system", "first_system_segment",
-            "first_system_joint", "state", "checksum", "segments_total")
+INTERNAL = ("state", "checksum", *columns.FIRST_ROWS)
 COMPONENTS = ("x", "y", "z")
 OF_TASKS = ("task", "outcome", "sample", "own_guess", "point")    # loaded for every task
 OWN_MEANING = {"guess": "label of the initial guess",
@@ -73,23 +72,14 @@ class Tidy:
         mark = mark_of(file, level)
         rows = file.task_count if level == "tasks" else len(file.h5[mark]) if mark else 0
         for folder in (f"/{level}", f"/timing/{level}"):
-            for name, item in (file.h5[folder].items() if folder in file.h5 else []):
-                if is_column(item, rows) and item.size and name not in INTERNAL:
-                    self.datasets.setdefault(name, f"{folder}/{name}")
-        self.shape = {name: self._axes(path) for name, path in self.datasets.items()}
-        self.by_guess = bool(file.guesses) and level != "steps" and any("guess" in axes for axes in self.shape.values())
-        self.by_tolerance = level == "tasks" and any("tolerance" in axes for axes in self.shape.values())
+            for name, column in columns.datasets(file, folder, rows).items():
+                if name not in INTERNAL:
+                    self.datasets.setdefault(name, column)
+        axes = {axis for column in self.datasets.values() for axis in column.axes}
+        self.by_guess = "guess" in axes
+        self.by_tolerance = level == "tasks" and "tolerance" in axes
         self.swept = [name for name in file.swept() if name != "guess"]
         self.names = self._names()
-
-    def _axes(self, path):
-        """Names of the axes after the row axis, derived from their lengths."""
-        lengths = self.file.h5[path].shape[1:]
-        known = {(): (), (len(self.file.guesses),): ("guess",),
-                 (len(self.file.guesses), len(self.file.tolerances)): ("guess", "tolerance")}
-        if self.level == "steps" or lengths not in known:
-            return () if not lengths else ("component",) if len(lengths) == 1 and lengths[0] <= 4 else ("other",)
-        return known[lengths]
 
     def _names(self):
         names = ["task"] if self.level != "tasks" else ["task", "outcome"]
@@ -97,12 +87,12 @@ class Tidy:
         names += ["sample", *(name for name in self.swept if name != "scene.type")]
         names += ["guess"] if self.by_guess else []
         names += ["tolerance"] if self.by_tolerance else []
-        for name in self.datasets:
-            axes = self.shape[name]
+        for name, column in self.datasets.items():
+            axes = column.axes
             if "other" in axes or name in names:
                 continue
             if axes == ("component",):
-                count = self.file.h5[self.datasets[name]].shape[1]
+                count = self.file.h5[column.path].shape[1]
                 names += [f"{name}_{COMPONENTS[k] if count == 3 else k}" for k in range(count)]
             elif "tolerance" in axes and not self.by_tolerance:
                 names += [f"{name}_{self._label(t)}" for t in self.tolerances]
@@ -127,7 +117,7 @@ class Tidy:
         """The type of a column's values."""
         if not self._is_measured(name):
             return self.shared(name).dtype
-        stored = self.file.h5[self.datasets[self._source(name)[0]]].dtype
+        stored = self.datasets[self._source(name)[0]].dtype
         return stored if stored.kind in "iuf" else np.dtype(str)
 
     def about(self, name):
@@ -139,9 +129,8 @@ class Tidy:
         if name in OF_TASKS:
             return self.of_tasks[name].unit, self.of_tasks[name].meaning
         base, index = self._source(name)
-        attributes = self.file.h5[self.datasets[base]].attrs
-        unit, meaning = (as_text(attributes.get(key, "")) for key in ("unit", "meaning"))
-        return unit, meaning if index is None else f"{meaning}; {name[len(base) + 1:]}".removeprefix("; ")
+        column = self.datasets[base]
+        return column.unit, column.meaning if index is None else f"{column.meaning}; {name[len(base) + 1:]}".removeprefix("; ")
 
     def condition(self, text):
         """Parses a condition on a column of these rows or of their tasks; see conditions.py."""
@@ -181,7 +170,7 @@ class Tidy:
         Raises KeyNotFound for a condition on a column with several values in a row."""
         tasks, guesses, tolerances, conditions_left = self.narrowed(where)
         for condition in conditions_left:
-            if self.shape.get(condition.column) != ():
+            if condition.column not in self.datasets or self.datasets[condition.column].axes:
                 raise KeyNotFound(f"{condition.text}: {condition.column} has a value for every guess or tolerance, so "
                                   "it cannot choose rows; use where() of the dataset")
         needed = list(dict.fromkeys([*names, *(condition.column for condition in conditions_left)]))
@@ -189,15 +178,14 @@ class Tidy:
         for some, rows in self._row_blocks(tasks, self._paths(needed)):
             kept = np.ones(len(some), dtype=bool)
             for condition in conditions_left:
-                kept &= condition.met(rows[self.datasets[condition.column]])
+                kept &= condition.met(rows[self.datasets[condition.column].path])
             owners.append(some[kept])
             for name in names:
-                values = rows[self.datasets[name]][kept]
-                axes = self.shape[name]
+                values, axes = rows[self.datasets[name].path][kept], self.datasets[name].axes
                 values = values[:, guesses] if "guess" in axes else values
                 found[name].append(values[:, :, tolerances] if "tolerance" in axes else values)
         if not owners:
-            empty = {name: np.empty((0, *self.file.h5[self.datasets[name]].shape[1:])) for name in names}
+            empty = {name: np.empty((0, *self.file.h5[self.datasets[name].path].shape[1:])) for name in names}
             return np.empty(0, dtype=np.int64), guesses, tolerances, empty
         whole = {name: np.concatenate(parts) for name, parts in found.items()}
         return np.concatenate(owners), guesses, tolerances, whole
@@ -229,7 +217,7 @@ class Tidy:
         return mask & self.guessing[tasks] if self.level == "tasks" else mask
 
     def _paths(self, names):
-        return list(dict.fromkeys(self.datasets[self._source(name)[0]] for name in names if self._is_measured(name)))
+        return list(dict.fromkeys(self.datasets[self._source(name)[0]].path for name in names if self._is_measured(name)))
 
     def _row_blocks(self, chosen, paths):
         """Yields (task of every row, {dataset: rows}) without rows that were never reached."""
@@ -263,7 +251,7 @@ class Tidy:
     def _in_rows(self, name):
         """Whether a column may differ between the rows of a task."""
         return name in self.names and self._is_measured(name) and (
-            self.level != "tasks" or bool(self.shape[self._source(name)[0]]))
+            self.level != "tasks" or bool(self.datasets[self._source(name)[0]].axes))
 
     def _column(self, name, tasks, rows, parts, g, t):
         """The Column of a name. `parts` caches a block's columns, so that guesses share an array if it is equal for
@@ -272,11 +260,11 @@ class Tidy:
             index = {"guess": g, "tolerance": t}
             return Column(self.shared(name), np.full(len(tasks), index[name]) if name in index else tasks)
         base, index = self._source(name)
-        axes = self.shape[base]
+        axes = self.datasets[base].axes
         where = () if not axes else (index,) if axes == ("component",) else \
             (g,) if axes == ("guess",) else (g, t if index is None else index)
         if (name, where) not in parts:
-            parts[name, where] = rows[self.datasets[base]][(slice(None), *where)]
+            parts[name, where] = rows[self.datasets[base].path][(slice(None), *where)]
         return Column(parts[name, where])
 
     def _of_tasks(self, name):
@@ -291,6 +279,6 @@ class Tidy:
         if name in self.datasets:
             return name, None
         base, _, last = name.rpartition("_")
-        if self.shape[base] == ("component",):
+        if self.datasets[base].axes == ("component",):
             return base, COMPONENTS.index(last) if last in COMPONENTS else int(last)
         return base, next(t for t in self.tolerances if self._label(t) == last)

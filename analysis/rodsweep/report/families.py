@@ -117,7 +117,7 @@ def _steps(file, sims, columns):
     figures = measures.step_figures(file, sims)
     found = []
     for name, title in STEPS.items():
-        values = getattr(figures, name)[:, columns]
+        values = figures[name][:, columns]
         if np.isfinite(values).any():
             found.append(Measure(name, title, "count" if name == "newton_iterations" else "part",
                                  bool(name != "newton_iterations" and np.nanmin(values) > 0), {"": values},

@@ -1,0 +1,43 @@
+#include "runner/file/reader_constants.hpp"
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "runner/file/layout.hpp"
+#include "runner/file/planned_columns.hpp"
+#include "runner/job/guess_keys.hpp"
+#include "runner/job/job_keys.hpp"
+#include "runner/plan/task_outcome.hpp"
+
+namespace rodsweep {
+namespace {
+
+void add_paths(const std::vector<Key>& keys, std::set<std::string>& names) {
+  for (const Key& key : keys) {
+    if (key.text == Key::Text::path) names.insert(key.name);
+    add_paths(key.keys, names);
+  }
+}
+
+}  // namespace
+
+nlohmann::ordered_json reader_constants() {
+  std::vector<std::string> outcomes, planned;
+  for (int i = 0; i < task_outcomes; ++i) outcomes.emplace_back(to_string(static_cast<TaskOutcome>(i)));
+  visit_planned_columns(
+      [](const RowPlace&) { return true; },
+      [&](const std::string& path, const char*, auto) { planned.push_back(path.substr(path.rfind('/') + 1)); });
+  std::set<std::string> paths;
+  const std::vector<Key> keys = job_key().keys;
+  add_paths(keys, paths);
+  add_paths(guess_keys(), paths);
+  const Key& iterations = *find_key(find_key(keys, "solve")->keys, "iterations");
+  return {{"schema_version", schema_version},
+          {"outcomes", outcomes},
+          {"planned", planned},
+          {"paths", paths},
+          {"gauss_seidel_iterations", *iterations.preset}};
+}
+
+}  // namespace rodsweep
