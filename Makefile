@@ -39,7 +39,7 @@ help:
 	@echo 'make fuzz          look for jobs that crash their reader, FUZZ_SECONDS=$(FUZZ_SECONDS) (tests/fuzz/README.md)'
 	@echo 'make schema        refresh jobs/schema.json, docs/keys.md and constants of the Python package after a change of keys or planned columns'
 	@echo 'make docs          write the pages with measured numbers (*.md.j2) anew, and all pages as a site, $(BUILD)/site/index.html'
-	@echo 'make format        clang-format the tree; make format-check only looks'
+	@echo 'make format        clang-format the tree; make format-check only looks, and checks the Python with flake8'
 	@echo 'make tidy          clang-tidy'
 	@echo 'make clean         remove $(BUILD)/ and those beside it (-sanitize/, -tidy/, ...); results stay'
 	@echo
@@ -56,10 +56,14 @@ build: configure
 demo: build
 	@jobs/studies.py --build $(BUILD) demo report
 
+# Seconds and names of the ten slowest tests.
+slowest = echo 'slowest tests, s:'; awk '/^[0-9]+\/[0-9]+ Testing: / { name = $$3 } /^Test time = / { print $$4, name }' \
+  $(BUILD)/Testing/Temporary/LastTest.log | sort -rn | sed -n '1,10s/^/  /p'
+
 # Three tests per two cores, since tests under mpirun mostly wait.
 test: configure
 	@cmake --build $(BUILD) -j $(CORES)
-	@ctest --preset default --test-dir $(BUILD) -j $$((3 * $(CORES) / 2))
+	@code=0; ctest --preset default --test-dir $(BUILD) -j $$((3 * $(CORES) / 2)) || code=$$?; $(slowest); exit $$code
 
 test-long: configure
 	@$(call packages,long)
@@ -118,7 +122,9 @@ format:
 
 format-check:
 	@$(call packages,format)
-	@clang-format --dry-run -Werror $(sources) && echo 'format: clean'
+	@clang-format --dry-run -Werror $(sources)
+	@flake8
+	@echo 'format: clean'
 
 # Has its own build folder, since clang cannot read the compiler's precompiled headers.
 tidy:

@@ -212,7 +212,8 @@ def figure(shown, models, base, panels, ratio, tolerances):
                 own = guesses.index(base)
                 axes.plot(at[own], e.value[own], marker="o", markersize=3.6, color=colour, markerfacecolor="white", zorder=3)
         axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
-        axes.set(xlim=(-0.6, len(values) - 0.4), ylim=(0, min(MOST, 1.05 * max(1, np.nanmax(ratio.high[[*models]][:, tolerances])))))
+        highest = np.nanmax(ratio.high[[*models]][:, tolerances])
+        axes.set(xlim=(-0.6, len(values) - 0.4), ylim=(0, min(MOST, 1.05 * max(1, highest))))
         axes.xaxis.set_major_locator(FixedLocator(at))
         axes.xaxis.set_minor_locator(NullLocator())
         long = max(len(text) for text, _ in values) > 4

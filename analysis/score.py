@@ -14,8 +14,8 @@ its row beside the others'. The others are then the cheapest on these draws. A s
 
 Times are medians over test draws, of learned settings also over trainings (the models seeds/NAME-2.h5, ... beside
 NAME.h5). "÷ cheapest" is the median of the quotients with the cheapest of all, with its 95 % bootstrap interval; of
-learned settings that contains the intervals of all trainings. The last table has the time of the trainings. "-": no setting of this kind reached the error on the
-tuning draws. An error in parentheses is above its level on the test draws.
+learned settings that contains the intervals of all trainings. The last table has the time of the trainings. "-": no
+setting of this kind reached the error on the tuning draws. An error in parentheses is above its level on the test draws.
 """
 
 import argparse
@@ -124,7 +124,8 @@ def write_job(path, job, folder):
     if os.path.exists(path):
         with open(path, encoding="utf-8") as file:
             if file.read() != text:
-                raise SweepFileError(f"{path} exists and has other settings: remove it and its results, or rename the tuning file")
+                raise SweepFileError(f"{path} exists and has other settings: remove it and its results, or rename the "
+                                     "tuning file")
     outputs.write(path, text)
     print(path)
 
@@ -206,7 +207,8 @@ def figure(scenes, width_mm):
     for column, (axes, (scene, found)) in enumerate(zip(page.axes[0], scenes.items())):
         for shift, (answer, look) in enumerate(looks.items()):
             levels = [level for level in score.LEVELS if (level, answer) in found]
-            times = [intervals.median(1e3 * runs.time_s, runs.draws) for runs in (found[level, answer][1][0] for level in levels)]
+            firsts = [found[level, answer][1][0] for level in levels]    # of the trainings
+            times = [intervals.median(1e3 * runs.time_s, runs.draws) for runs in firsts]
             x = [level * 1.08 ** (shift - len(shown) // 2) for level in levels]
             y, low, high = (np.array([float(getattr(time, part)) for time in times]) for part in ("value", "low", "high"))
             style.errorbar(axes, x, y, yerr=style.whiskers(y, low, high), **look.line(), linewidth=0.9, markersize=2.8,

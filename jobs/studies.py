@@ -160,7 +160,8 @@ STUDIES = {
         origins("integrators")]),
     "balance": Study("two kinds of step, over the time step and on every kind of scene", "5 min", [
         *run("balance", "balance_scenes"), to("balance", draw("balance", "balance")),
-        to("balance_scenes", "analysis/balance.py results/balance_scenes.h5 --format png"), origins("balance", "balance_scenes")]),
+        to("balance_scenes", "analysis/balance.py results/balance_scenes.h5 --format png"),
+        origins("balance", "balance_scenes")]),
     "lattices": Study("cubic lattices: number of joints, all preconditioners with all guesses, closed loops", "2 hours",
                       combinations("lattice_swing", "lattice_preconditioners", "lattice_closed",
                                    without=("lattice_preconditioners", "lattice_closed"))),
@@ -199,7 +200,7 @@ OTHERS = {
         *film("lattice_sag", 0, "lattice", "along"), *film("lattice_dropped", 0, "dropped", "along"),
         *film("lattice_pressed", 0, "pressed", "along"), *film("net_wind", 0, "wind", "along"),
         *film("twisted", 0, "twisted", "along"), *film("pulled", 0, "pulled", "along")]),
-    "benchmark": Study("linear systems and our iterations on them, for guesses elsewhere: results/benchmark, 350 MB", "10 min", [
+    "benchmark": Study("linear systems and our iterations on them, for use elsewhere: results/benchmark, 350 MB", "10 min", [
         *run("benchmark"), "analysis/benchmark_data.py results/benchmark.h5 -o results/benchmark"]),
     "demo": Study("a first report", "a few minutes", run("demo")),
 }

@@ -329,7 +329,8 @@ def main():
         text = rendered(template)
         current = os.path.exists(page) and open(page, encoding="utf-8").read() == text
         if check and not current:
-            stale.append(f"{os.path.relpath(page)} is not current: docs/tools/pages.py writes it of {os.path.relpath(template)}")
+            stale.append(f"{os.path.relpath(page)} is not current: docs/tools/pages.py writes it of "
+                         f"{os.path.relpath(template)}")
         elif not current:
             with open(page, "w", encoding="utf-8") as file:
                 file.write(text)

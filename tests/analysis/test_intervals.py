@@ -91,7 +91,8 @@ class Trainings(unittest.TestCase):
     def test_where_all_trainings_agree_the_interval_is_that_of_simulations(self):
         values = np.random.default_rng(3).normal(1, 0.2, (20, 1)).repeat(3, axis=1)
         alone, together = intervals.mean(values[:, 0]), intervals.mean_over_trainings(values)
-        np.testing.assert_allclose([together.value, together.low, together.high], [alone.value, alone.low, alone.high], rtol=1e-12)
+        np.testing.assert_allclose([together.value, together.low, together.high],
+                                   [alone.value, alone.low, alone.high], rtol=1e-12)
 
     def test_where_all_simulations_agree_it_is_students_over_the_trainings(self):
         values = np.tile([0.9, 1.0, 1.2], (20, 1))

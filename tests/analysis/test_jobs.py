@@ -245,7 +245,8 @@ class Parts(WithJobs):
         self.assertEqual(job_paths.given({"guesses": guesses}), list("abcdef"))
 
     def test_the_bar_fits_its_terminal(self):
-        with unittest.mock.patch("sys.stderr", Bar()) as shown, unittest.mock.patch.dict(os.environ, {"TERM": "xterm", "COLUMNS": "20"}):
+        narrow = unittest.mock.patch.dict(os.environ, {"TERM": "xterm", "COLUMNS": "20"})
+        with unittest.mock.patch("sys.stderr", Bar()) as shown, narrow:
             progress.line()("x" * 40)
         self.assertEqual(shown.getvalue(), "\r\x1b[K" + "x" * 19)
 

@@ -100,8 +100,8 @@ class Program(unittest.TestCase):
             iterations, newton = file.h5["solves/iterations"][:].astype(float), file.h5["solves/newton"][:]
             for task in range(file.task_count):
                 rows = slice(file.first_solve[task], file.first_solve[task] + file.solves[task])
-                for which, run in (("first", newton[rows] == 0), ("all", newton[rows] >= 0)):
-                    counted = iterations[rows][run]
+                for which, mask in (("first", newton[rows] == 0), ("all", newton[rows] >= 0)):
+                    counted = iterations[rows][mask]
                     reached = (counted >= 0).all(axis=(0, 1)) & (counted[:, 0].sum(axis=0) > 0)
                     expected = counted.sum(axis=0)[:, reached] / counted[:, 0].sum(axis=0)[reached]
                     self.assertTrue(reached[:4].all())

@@ -93,12 +93,14 @@ class Looks(Page):
             self.browser.open(self.page, dark=dark)
             weakest = self.js("""(() => {
               const channels = (colour) => colour.match(/[\\d.]+/g).map(Number);
-              const light = ([r, g, b]) => [r, g, b].map(c => c / 255).map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)
+              const light = ([r, g, b]) => [r, g, b].map(c => c / 255)
+                .map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)
                 .reduce((sum, c, k) => sum + c * [0.2126, 0.7152, 0.0722][k], 0);
               const behind = (one) => { for (; one; one = one.parentElement) {
                 const colour = channels(getComputedStyle(one).backgroundColor);
                 if (colour.length === 3) return colour; } return [255, 255, 255]; };
-              return Math.min(...[...document.querySelectorAll('main p, main td, main th, main b, main button, main label, main select')]
+              const texts = 'main p, main td, main th, main b, main button, main label, main select';
+              return Math.min(...[...document.querySelectorAll(texts)]
                 .filter(one => one.innerText.trim() && !one.closest(':disabled')).map(one => {
                   const pair = [light(channels(getComputedStyle(one).color)), light(behind(one))].sort((a, b) => b - a);
                   return (pair[0] + 0.05) / (pair[1] + 0.05); }));
@@ -205,7 +207,8 @@ class NothingSwept(Page):
 
 class Access(Page):
     def test_the_keyboard_reaches_every_control(self):
-        wanted = self.js("""[...document.querySelectorAll('a[href], button, select, input, summary, [tabindex="0"]')].filter(one =>
+        wanted = self.js("""[...document.querySelectorAll('a[href], button, select, input, summary, [tabindex="0"]')]
+                            .filter(one =>
           one.checkVisibility() && !one.disabled && !(one.type === 'radio' && !one.checked)).length""")
         reached = set()
         for _ in range(wanted + 5):

@@ -40,7 +40,8 @@ class Choice(unittest.TestCase):
     def test_each_answer_is_the_fastest_of_its_kind_that_reaches_the_error(self):
         best = score.chosen(self.FOUND)
         self.assertEqual({answer: best.get((0.1, answer)) for answer in score.ANSWERS}, {
-            "cheapest of all": setting("copingnet rods"), "direct solve": setting(method="direct"), "Gauss-Seidel": None, "your guess": None,
+            "cheapest of all": setting("copingnet rods"), "direct solve": setting(method="direct"),
+            "Gauss-Seidel": None, "your guess": None,
             "CG from zero": setting("zero", "block_icc"),
             "CG, classical guess": setting("previous"), "CG, learned guess": setting("copingnet rods"),
             "CG, learned preconditioner": setting("previous", "learned rods"),
@@ -66,7 +67,8 @@ class Choice(unittest.TestCase):
 
     def test_learned_settings_have_the_median_of_their_trainings_and_the_interval_of_all(self):
         learned, base = setting("copingnet rods 5 lag 8"), runs(0, [1, 1, 1, 1, 1])
-        found = {setting(f"copingnet rods{seed} 5 lag 8"): runs(0, [time] * 5) for seed, time in (("", 2), ("-2", 5), ("-3", 4))}
+        found = {setting(f"copingnet rods{seed} 5 lag 8"): runs(0, [time] * 5)
+                 for seed, time in (("", 2), ("-2", 5), ("-3", 4))}
         found |= {setting("copingnet rods-large 5 lag 8"): base, setting("copingnet rods-2 5 lag 9"): base,
                   setting("copingnet rods-32 5 lag 8"): base}
         factor = score.factor(score.trainings(learned, found), base)

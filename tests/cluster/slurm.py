@@ -64,7 +64,8 @@ class Slurm:
         self.start_munge()
         os.environ["SLURM_CONF"] = os.path.join(self.folder, "slurm.conf")
         with open(os.environ["SLURM_CONF"], "w", encoding="ascii") as file:
-            file.write(CONFIGURATION.format(head=os.uname().nodename, address=HEAD, folder=self.folder, lost_after_s=LOST_AFTER_S))
+            file.write(CONFIGURATION.format(head=os.uname().nodename, address=HEAD, folder=self.folder,
+                                            lost_after_s=LOST_AFTER_S))
             for host in self.hosts:
                 file.write(f"NodeName={host.name} NodeAddr={host.address} CPUs={cores} Sockets=1 CoresPerSocket={cores} "
                            "ThreadsPerCore=1 State=UNKNOWN\n")
@@ -100,7 +101,8 @@ class Slurm:
     @staticmethod
     def job(number):
         """Slurm's data of a job: {key: text}."""
-        said = subprocess.run(["scontrol", "--oneliner", "show", "job", number], capture_output=True, text=True, check=True).stdout
+        said = subprocess.run(["scontrol", "--oneliner", "show", "job", number], capture_output=True, text=True,
+                              check=True).stdout
         return dict(word.split("=", 1) for word in said.split() if "=" in word)
 
     def states(self):

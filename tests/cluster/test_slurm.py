@@ -101,8 +101,9 @@ class Slurmed(SlurmCase):
     def test_an_array_makes_shards_that_merge_into_what_a_single_run_writes(self):
         number = self.submit(self.path, options=("--array=1-3", "--ntasks=1"))
         wait_until("three shards", 300, lambda: sum(self.done(p) for p in glob.glob(self.name + "-*of3.h5")) == 300)
-        wait_until("an empty queue", 60, lambda: not subprocess.run(["squeue", "-h", "-j", number], capture_output=True, text=True,
-                                                                    check=False).stdout)
+        queue = ["squeue", "-h", "-j", number]
+        wait_until("an empty queue", 60,
+                   lambda: not subprocess.run(queue, capture_output=True, text=True, check=False).stdout)
         shards = sorted(glob.glob(self.name + "-*of3.h5"))
         self.assertEqual(len(shards), 3)
         self.rodsweep(0, "merge", *shards, "-o", self.path)

@@ -132,7 +132,8 @@ class Release(unittest.TestCase):
         """In CMakeLists.txt, the Python package, the citation and the changelog, of which the last two have its date."""
         version = re.search(r"project\(rodsweep VERSION ([\d.]+)", text_of("CMakeLists.txt"))[1]
         self.assertIn(f'__version__ = "{version}"', text_of("analysis/rodsweep/__init__.py"))
-        citation, last = yaml.safe_load(text_of("CITATION.cff")), re.search(r"^## \[(.+)\] - (.+)$", text_of("CHANGELOG.md"), re.M)
+        citation = yaml.safe_load(text_of("CITATION.cff"))
+        last = re.search(r"^## \[(.+)\] - (.+)$", text_of("CHANGELOG.md"), re.M)
         self.assertEqual((citation["version"], str(citation.get("date-released", "unreleased"))), (version, last[2]))
         self.assertEqual(last[1], version)
 

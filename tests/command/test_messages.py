@@ -29,7 +29,6 @@ class Mistyped(Case):
                 self.assert_refused(words, "--help", *texts)
         self.assertNotIn("did you mean", rodsweep("frobnicate").stderr)
 
-
     def test_numbers_must_be_finite(self):
         for option in ("--memory-limit-gb", "--time-limit", "--task-time-limit", "--worker-timeout"):
             for value in ("nan", "inf", "-inf"):

@@ -161,8 +161,8 @@ class Python(WithPython):
         for number, words in (("-5", "mine.py: counted -5 products with A; must be from 0 to 32000"),
                               ("40000", "mine.py: counted 40000 products with A; must be from 0 to 32000"),
                               ("2 ** 70", "must be from 0 to 32000"), ("-2 ** 70", "must be from 0 to 32000"),
-                              ("'x'", "mine.py: propose() returned (x0, 'x'); the second must be the number of products with A, "
-                                      "an int"),
+                              ("'x'", "mine.py: propose() returned (x0, 'x'); the second must be the number of products with "
+                                      "A, an int"),
                               ("1.0", "propose() returned (x0, 1.0); the second must be")):
             self.assertIn(words, self.error(guess(f"def propose(self, system): return 0 * system.b, {number}")))
 

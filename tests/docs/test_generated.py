@@ -100,13 +100,15 @@ class Pages(unittest.TestCase):
                 ("direct", "direct", "43 [33, 58]", "0.8 [0.5, 1]", "0.9 [0.7, 1]", "-"),
                 ("from zero", "block icc from zero", "40 [39, 41]", "0.9 [0.8, 1]", "-", "1 [0.8, 1]"),
                 ("classical guess", "jacobi from quadratic", "35", "-", "1 [1, 1]", "1 [1, 2]"),
-                ("learned guess", "block icc from copingnet x lag 8", "70", "0.5 [0.4, 0.6]", "0.6 [0.5, 0.7]", "0.7 [0.6, 0.8]")]
+                ("learned guess", "block icc from copingnet x lag 8", "70", "0.5 [0.4, 0.6]", "0.6 [0.5, 0.7]",
+                 "0.7 [0.6, 0.8]")]
         table = [f"  {row[0]:<20}{row[1]:>40}" + "".join(f"{cell:>22}" for cell in row[2:]) for row in rows]
         other = [line.replace("quadratic", "previous!") for line in table]
-        self.write("net.txt", "\n".join(["Net, rows = 8: 1176 joints, n = 5", "", *table, "", "Net, rows = 9: 12 joints", "", *other, ""]))
+        self.write("net.txt", "\n".join(["Net, rows = 8: 1176 joints, n = 5", "", *table, "",
+                                         "Net, rows = 9: 12 joints", "", *other, ""]))
         page = self.page("{{ cheapest('net', {'8 × 8': 'Net, rows = 8:'}) }}").splitlines()
-        self.assertEqual(page[2], "| 8 × 8 | 1,176 | 43 | 40 `block_icc` | 35 `jacobi`, `quadratic` | 70 `block_icc`, `x lag 8` "
-                                  "| 1 [1, 1] | 0.6 [0.5, 0.7] | 0.5 [0.4, 0.6] |")
+        self.assertEqual(page[2], "| 8 × 8 | 1,176 | 43 | 40 `block_icc` | 35 `jacobi`, `quadratic` | "
+                                  "70 `block_icc`, `x lag 8` | 1 [1, 1] | 0.6 [0.5, 0.7] | 0.5 [0.4, 0.6] |")
         self.assertIn("net.txt has no block 'Net, rows = 7:'", self.refused("{{ cheapest('net', {'7': 'Net, rows = 7:'}) }}"))
 
     def test_a_table_that_is_older_than_its_job_or_models_is_not_quoted(self):

@@ -77,7 +77,8 @@ class Studies(unittest.TestCase):
                 self.assertRegex(said, rf"(?m)^  {name} +{re.escape(study.question)} \({re.escape(study.time)}\)$")
 
     def test_unknown_names_are_refused_with_the_nearest(self):
-        for name, near in (("spacial", "spatial"), ("scores", "score"), ("knot", "contact"), ("learned_rods_length", "learned_rods")):
+        for name, near in (("spacial", "spatial"), ("scores", "score"),
+                           ("knot", "contact"), ("learned_rods_length", "learned_rods")):
             with self.assertRaises(SystemExit) as refused:
                 studies.wanted(name)
             self.assertIn(f"unknown study '{name}': did you mean '{near}'?\nIt may be all, spatial, ", refused.exception.code)

@@ -31,7 +31,7 @@ ANALYSIS = SOURCE / "analysis"
 sys.path[:0] = [str(SOURCE / "tests" / "command"), str(ANALYSIS)]
 import h5py  # noqa: E402
 import matplotlib.figure  # noqa: E402
-from program import JOB, RODSWEEP, ROD, Case, rodsweep, write_job  # noqa: E402
+from program import RODSWEEP, ROD, Case, rodsweep, write_job  # noqa: E402
 
 os.environ.update(RODSWEEP=os.path.abspath(RODSWEEP), PMIX_MCA_gds="hash")    # else Open MPI needs room for files
 CODES = {name: int(number) for name, number in re.findall(

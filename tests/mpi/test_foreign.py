@@ -40,7 +40,8 @@ class Foreign(SweepCase):
 
     def test_a_run_does_not_begin_on_a_file_that_is_open_for_writing(self):
         self.rodsweep(3, "run", long_job(), "-o", "open.h5")
-        holder = subprocess.Popen([sys.executable, "-c", "import h5py; f = h5py.File('open.h5', 'r+'); print(flush=True); input()"],
+        code = "import h5py; f = h5py.File('open.h5', 'r+'); print(flush=True); input()"
+        holder = subprocess.Popen([sys.executable, "-c", code],
                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         holder.stdout.readline()
         self.assert_refused_once(3, "run", long_job(), "-o", "open.h5", "--resume",

@@ -14,8 +14,8 @@ import unittest.mock
 
 import h5py
 import numpy as np
-from program import ALL_DONE, MPIRUN, RODSWEEP, STOPPED, TASKS_FAILED, TOO_LONG, USER_ERROR, SweepCase, checksum, data_job, job, \
-    kill_all, long_job, ranks_of, rodsweep, start, status, wait_for_tasks
+from program import ALL_DONE, MPIRUN, RODSWEEP, STOPPED, TASKS_FAILED, TOO_LONG, USER_ERROR, SweepCase, checksum, data_job, \
+    job, kill_all, long_job, ranks_of, rodsweep, start, status, wait_for_tasks
 
 
 class RankCounts(SweepCase):
@@ -362,7 +362,8 @@ class Speaking(SweepCase):
         self.rodsweep(2, "run", job("files"))
         path = "results/files.h5"
         self.speak_once((("query", path), "cg_ratio.previous"), (("schema",), '"rodsweep job"'),
-                        (("rerun", path, "3"), "identical to task 3"), (("merge", path, "-o", "results/files-all.h5"), "6 of 6"))
+                        (("rerun", path, "3"), "identical to task 3"),
+                        (("merge", path, "-o", "results/files-all.h5"), "6 of 6"))
         made = sorted(name for name in os.listdir("results") if name.startswith("files"))
         self.assertEqual(made, ["files-all.h5", "files-task-3.h5", "files.h5"])
 

@@ -52,8 +52,9 @@ class Learning(TrainingCase):
     def test_models_are_the_same_on_1_2_4_and_6_ranks(self):
         for name, changes in (
                 ("factors", {}),
-                ("hops", {"network": {"encoding": "paper_residual", "processor": "message_passing", "base": "none", "latent": 16,
-                                      "steps": 2, "best_length": False, "moves": True}, "training": {"loss": "mse"}})):
+                ("hops", {"network": {"encoding": "paper_residual", "processor": "message_passing", "base": "none",
+                                      "latent": 16, "steps": 2, "best_length": False, "moves": True},
+                          "training": {"loss": "mse"}})):
             path = train_job(name, **changes)
             alone = self.rodsweep(0, "run", path, "-o", f"{name}.h5")
             self.assertRegex(alone.stdout, r"3 epochs.*epoch \d(.*\n)*.*\b5 validation simulations")

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from rodsweep.drawing import layout, style
+from rodsweep.drawing import layout, looks, style
 from rodsweep.drawing.study import sample_text
 from rodsweep.reading import intervals, measures, remarks, timings
 
@@ -157,7 +157,7 @@ def time_figure(study, by_newton):
              f"parts in the proportions of their medians. Counted: {measures.NEWTON[study.newton]}. "
              f"Solved to tolerance {study.solve_tolerance()}. CG includes the preconditioner's set-up. "
              f"{remarks.oracle_note(study.file, study.guesses)}{timings.interruptions(part, study.sims)}"]
-    handles = [Patch(facecolor=style.PARTS[name][0], hatch=style.PARTS[name][1], edgecolor="white", label=name)
+    handles = [Patch(facecolor=looks.PARTS[name][0], hatch=looks.PARTS[name][1], edgecolor="white", label=name)
                for name in TIME_PARTS]
     if with_direct:
         handles.append(style.DIRECT.handle("assembly + direct solve"))
@@ -210,7 +210,7 @@ def _stack(axes, x, estimates):
     left, width = x.edges()
     bottom = np.zeros(len(total))
     for k, name in enumerate(TIME_PARTS):
-        colour, hatch = style.PARTS[name]
+        colour, hatch = looks.PARTS[name]
         axes.bar(left, parts[:, k], width, bottom=bottom, align="edge", color=colour, hatch=hatch, edgecolor="white",
                  linewidth=0.3)
         bottom = bottom + np.nan_to_num(parts[:, k])

@@ -129,4 +129,3 @@ def picture(text, size, threads=1, fine=False):
         said = [line for line in done.stderr.decode("utf-8", "replace").splitlines() if line.strip()]
         raise ToolError("povray failed: " + " ".join(said[-8:]))
     return done.stdout
-

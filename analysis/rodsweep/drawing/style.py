@@ -11,7 +11,7 @@ from matplotlib import colors
 from matplotlib.lines import Line2D
 
 from rodsweep.drawing import looks
-from rodsweep.drawing.looks import KINDS, PARTS, SPARE
+from rodsweep.drawing.looks import KINDS, SPARE
 
 MM = 1 / 25.4
 WIDTHS_MM = {"84": 84, "174": 174}

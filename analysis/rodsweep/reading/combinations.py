@@ -3,7 +3,8 @@
 A combination is a preconditioner, with the settings that the job sweeps, and a guess; or the direct solve. Paired
 combinations solve the same systems, in a closed loop each has its own trajectory. The time is that of a solve with
 guess and preconditioner set-up, or in a closed loop of a whole step. Kinds of guesses: CG from zero, classical ones,
-learned ones, those of the user's plug-ins, and oracles, which know the solution. A paired oracle's own time is not counted: it is a free guess.
+learned ones, those of the user's plug-ins, and oracles, which know the solution. A paired oracle's own time is not
+counted: it is a free guess.
 """
 
 import os

@@ -2,9 +2,10 @@
 cheapest of each kind at each error. For score.py.
 
 A setting is an integrator and its step, a method with its Newton iterations, and for CG preconditioner, tolerance and
-guess. Learned settings have a learned guess, or a learned preconditioner with any guess. The reference of a draw is its simulation with the smallest step. The error of a frame is the root mean square
-distance of the segments from the reference, relative to the diagonal of the box around all segments at the start; that
-of a simulation is its worst frame. It is infinite for a failed simulation. The time is that of all steps with their
+guess. Learned settings have a learned guess, or a learned preconditioner with any guess. The reference of a draw is its
+simulation with the smallest step. The error of a frame is the root mean square distance of the segments from the
+reference, relative to the diagonal of the box around all segments at the start; that of a simulation is its worst
+frame. It is infinite for a failed simulation. The time is that of all steps with their
 assembly, guesses and solves, over the simulated time. A step that took CLIPPED times the median of its simulation was
 interrupted, and counts as that.
 

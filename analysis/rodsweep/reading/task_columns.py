@@ -170,7 +170,8 @@ class _Known:
 
     def __init__(self, table):
         self.table = table
-        self.words = {"state": ("done", "pending"), "outcome": tuple(constants.OUTCOMES), "own_guess": tuple(table.file.guesses)}
+        self.words = {"state": ("done", "pending"), "outcome": tuple(constants.OUTCOMES),
+                      "own_guess": tuple(table.file.guesses)}
 
     def __iter__(self):
         return iter(self.table.names)
