@@ -10,7 +10,7 @@
 #include "runner/command/next_line.hpp"
 #include "runner/command/plan_estimate.hpp"
 #include "runner/command/training_plan.hpp"
-#include "runner/experiment/batched_evaluation.hpp"
+#include "runner/experiment/evaluation.hpp"
 #include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/inputs.hpp"
 #include "runner/file/file_creation.hpp"
@@ -203,7 +203,7 @@ ExitCode execute(const PlanOptions& options, Console& console) {
   if (is_training(job)) return show_training_plan(options, job, console);
   const Plan plan = checked_plan(job);
   limit_memory((1 - memory_reserve) * host_memory());
-  const std::vector<Probe> probes = options.probe ? probe(plan, evaluate_among_equals) : std::vector<Probe>();
+  const std::vector<Probe> probes = options.probe ? probe(plan, evaluate) : std::vector<Probe>();
   console.result(options.json ? json_text(to_json(plan, probes, options)) : to_text(plan, probes, options));
   return ExitCode::ok;
 }

@@ -135,16 +135,11 @@ void advise(Console& console, const RunOptions& options, const Placement& where,
 }
 
 /// Counts tries in the file. A non-zero count on an incomplete task means that its worker crashed.
-BatchBody counting_tries(BatchBody body, const Plan& plan, ResultsFile& file) {
-  return [body = std::move(body), &plan, &file](const std::vector<std::int64_t>& tasks, const StopRequested& stop) {
+TaskBody counting_tries(TaskBody body, const Plan& plan, ResultsFile& file) {
+  return [body = std::move(body), &plan, &file](std::int64_t index, const StopRequested& stop) {
     const auto begin = Clock::now();
-    for (const std::int64_t task : tasks) file.begin(plan.task(task));
-    const auto abandon = [&](std::int64_t task, double share) {
-      const Seconds ran = (Clock::now() - begin) / static_cast<double>(tasks.size());
-      const Task abandoned = plan.task(task);
-      file.abandon(abandoned,
-                   {ran.count(), static_cast<std::int32_t>(std::lround(share * static_cast<double>(abandoned.steps)))});
-    };
+    const Task task = plan.task(index);
+    file.begin(task);
     // A failure within stop() (a sync, a message) is not the task's outcome.
     std::exception_ptr failure;
     const StopRequested checked_stop = [&] {
@@ -156,20 +151,23 @@ BatchBody counting_tries(BatchBody body, const Plan& plan, ResultsFile& file) {
       }
     };
     try {
-      std::vector<TaskResult> results = body(tasks, checked_stop);
+      TaskResult result = body(index, checked_stop);
       if (failure) std::rethrow_exception(failure);
-      for (std::size_t i = 0; i < tasks.size(); ++i)
-        if (results[i].outcome == TaskOutcome::pending) abandon(tasks[i], results[i].share);
-      return results;
-    } catch (...) {  // this rank did not crash: the tries do not count
-      for (const std::int64_t task : tasks) file.abandon(plan.task(task));
+      if (result.outcome == TaskOutcome::pending) {
+        const Seconds ran = Clock::now() - begin;
+        const auto steps = std::lround(result.share * static_cast<double>(task.steps));
+        file.abandon(task, {ran.count(), static_cast<std::int32_t>(steps)});
+      }
+      return result;
+    } catch (...) {  // this rank did not crash: the try does not count
+      file.abandon(task);
       throw;
     }
   };
 }
 
 /// Master and worker take turns in one process.
-Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal, BatchBody body,
+Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal, TaskBody body,
                         const std::function<void()>& now_and_then, const Timeouts& timeouts) {
   const auto received = [&] { return signal.received(); };
   MemoryNetwork network(2);
@@ -204,7 +202,7 @@ bool ranks_exit_alone() {
 }
 
 Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pending, Progress& progress,
-                             const StopSignal& signal, BatchBody body, const std::function<void()>& now_and_then,
+                             const StopSignal& signal, TaskBody body, const std::function<void()>& now_and_then,
                              ResultsFile& file, const Timeouts& timeouts, const Callbacks& callbacks) {
   const auto received = [&] { return signal.received(); };
   MpiChannel channel(mpi.world());
@@ -350,7 +348,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   callbacks.crashed = [&](std::int64_t task, int crashes) {
     return store_as_crashed(plan.task(task), crashes, plan, file);
   };
-  BatchBody body =
+  TaskBody body =
       counting_tries(extension ? extending_body(plan, *extension, write, warn) : task_body(plan, write), plan, file);
   const auto now_and_then = [&] {
     file.commit_if_due();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "runner/experiment/task_body.hpp"
 #include "runner/file/inspect.hpp"
 
 namespace rodsweep {
@@ -16,17 +15,12 @@ std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file
                                        const std::optional<Extension>& extension, const std::optional<Shard>& shard,
                                        int max_crashes) {
   const std::vector<bool> mine = in_shard(plan, shard);
-  // Each task of an extended file is handled on its own: no batches.
-  const std::vector<std::int64_t> batch =
-      extension ? std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1) : batches(plan);
   const double limit_s = plan.spec(0).time_limit_s;
   std::vector<PendingTask> pending;
   for (const Task& task : plan.tasks())
     if (const auto i = static_cast<std::size_t>(task.index);
         mine[i] && !file.done()[i] && !has_crashed(file, task.index, max_crashes)) {
-      const int crashes = file.tries()[i];
-      pending.push_back({task.index, task.cost * (extension ? extension->cost(task.index) : 1),
-                         crashes > 0 ? -1 : batch[i], crashes});
+      pending.push_back({task.index, task.cost * (extension ? extension->cost(task.index) : 1), file.tries()[i]});
       if (limit_s > 0) pending.back().limit_s = limit_s;
     }
   return pending;

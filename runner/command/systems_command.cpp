@@ -26,12 +26,12 @@ ExitCode execute(const SystemsOptions& options, Console& console) {
     if (at.step % options.every == 0 && (at.newton == 0 || !options.first)) systems.add(rod, system, at, solution);
   };
   const auto nothing = [](const Task&, const TaskRecord&, const TaskOrigin*) {};
-  const BatchBody body =
+  const TaskBody body =
       task_body(stored.alone, nothing,
                 [&](const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
                   return evaluate_observed(observe, task, spec, record, stop);
                 });
-  const TaskResult result = body({0}, [&] { return signal.received() != 0; }).front();
+  const TaskResult result = body(0, [&] { return signal.received() != 0; });
   if (result.outcome == TaskOutcome::pending) {
     console.note(fmt::format("stopped early by {}; nothing was written", signal_cause(signal.received())));
     return ExitCode::stopped;

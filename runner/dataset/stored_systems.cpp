@@ -25,7 +25,7 @@ SystemRows::Place SystemRows::place(const SolvePosition& at) const {
           before * iteration_.joint + rod.joint};
 }
 
-void SystemStore::before(const Rod& rod, const SolvePosition& at, bool balanced) {
+void StoringSolve::write_state(const Rod& rod, const SolvePosition& at, bool balanced) {
   const SystemRows::Place place = rows_.place(at);
   record_.systems.step[place.system] = at.step;
   record_.systems.newton[place.system] = static_cast<std::int16_t>(at.newton);
@@ -46,6 +46,16 @@ void SystemStore::before(const Rod& rod, const SolvePosition& at, bool balanced)
   }
 }
 
+SolveOutcome StoringSolve::solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                                 VectorX& delta_lambda) {
+  if (!rows_.holds(at)) return solve_.solve(system, at, assemble_s, delta_lambda);
+  write_state(scene_.rods[static_cast<std::size_t>(at.rod)], at, system.keeps_balance());
+  const SolveOutcome outcome = solve_.solve(system, at, assemble_s, delta_lambda);
+  if (outcome == SolveOutcome::converged)
+    VectorX::Map(record_.systems.solution.row(rows_.place(at).joint), delta_lambda.size()) = delta_lambda;
+  return outcome;
+}
+
 namespace {
 
 std::optional<StoredBalance> stored_balance(const TaskRecord& record, const Rod& rod, std::size_t first) {
@@ -63,18 +73,6 @@ std::optional<StoredBalance> stored_balance(const TaskRecord& record, const Rod&
 }
 
 }  // namespace
-
-StoringSolve::StoringSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record)
-    : scene_(scene), store_(scene, iterations, record), solve_(solve) {}
-
-SolveOutcome StoringSolve::solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
-                                 VectorX& delta_lambda) {
-  if (!store_.holds(at)) return solve_.solve(system, at, assemble_s, delta_lambda);
-  store_.before(scene_.rods[static_cast<std::size_t>(at.rod)], at, system.keeps_balance());
-  const SolveOutcome outcome = solve_.solve(system, at, assemble_s, delta_lambda);
-  if (outcome == SolveOutcome::converged) VectorX::Map(store_.solution(at), delta_lambda.size()) = delta_lambda;
-  return outcome;
-}
 
 std::vector<StoredSystem> stored_systems(const TaskRecord& record, const Scene& scene, int iterations) {
   const SystemRows rows(scene, iterations);

@@ -30,37 +30,24 @@ class SystemRows {
   Place iteration_;          ///< rows of all rods
 };
 
-/// Writes systems into a record. Allocates nothing after construction.
-class SystemStore {
- public:
-  SystemStore(const Scene& scene, int iterations, TaskRecord& record) : rows_(scene, iterations), record_(record) {}
-
-  bool holds(const SolvePosition& at) const { return rows_.holds(at); }
-
-  /// Writes the rod's state, from which the system is assembled. `balanced`: also the data of the momentum balance.
-  void before(const Rod& rod, const SolvePosition& at, bool balanced);
-
-  /// Where to write the solution: six numbers per joint.
-  double* solution(const SolvePosition& at) { return record_.systems.solution.row(rows_.place(at).joint); }
-
- private:
-  SystemRows rows_;
-  TaskRecord& record_;
-};
-
-/// Records the input and the solution of another solve. Allocates nothing.
+/// Records the input and the solution of another solve in a task's record. Allocates nothing after construction.
 class StoringSolve : public LinearSolve {
  public:
   /// All arguments must outlive this.
-  StoringSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record);
+  StoringSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record)
+      : scene_(scene), rows_(scene, iterations), solve_(solve), record_(record) {}
 
   SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
                      VectorX& delta_lambda) override;
 
  private:
+  /// Writes the rod's state, from which the system is assembled. `balanced`: also the data of the momentum balance.
+  void write_state(const Rod& rod, const SolvePosition& at, bool balanced);
+
   const Scene& scene_;
-  SystemStore store_;
+  SystemRows rows_;
   LinearSolve& solve_;
+  TaskRecord& record_;
 };
 
 /// Reads the solved systems, in order.

@@ -21,15 +21,10 @@ namespace rodsweep {
 
 enum class Tag : int { assign = 1, stop, finish, report, interrupted, alive, gone };
 
-/// Master to worker: run these tasks after those assigned before, together if possible.
+/// Master to worker: run this task after those assigned before.
 struct Assign {
   static constexpr Tag tag = Tag::assign;
-  static constexpr std::size_t most = 8;
-  std::uint64_t count = 0;
-  std::array<std::int64_t, most> task{};
-
-  void add(std::int64_t index) { task.at(count++) = index; }
-  std::vector<std::int64_t> tasks() const { return {task.begin(), task.begin() + count}; }
+  std::int64_t task = 0;
 };
 
 /// Master to worker: abandon all your tasks, report each, wait for Finish.
@@ -43,7 +38,7 @@ struct Finish {
   bool ranks_lost = false;  ///< make no collective call; send Gone when your results are on disk
 };
 
-/// Worker to master: one per task of each Assign.
+/// Worker to master: one per Assign.
 struct Report {
   static constexpr Tag tag = Tag::report;
   std::int64_t task = 0;

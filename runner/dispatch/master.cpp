@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t failures_kept = 5;
 
-auto order(const PendingTask& task) { return std::tuple(task.crashes, -task.cost, task.batch, task.index); }
+auto order(const PendingTask& task) { return std::tuple(task.crashes, -task.cost, task.index); }
 bool comes_first(const PendingTask& a, const PendingTask& b) { return order(a) < order(b); }
 
 }  // namespace
@@ -178,7 +178,7 @@ void Master::lose(int rank) {
   if (callbacks_.lost) callbacks_.lost(rank);
   const std::vector<PendingTask> tasks = std::exchange(lost.tasks, {});
   in_flight_ -= static_cast<std::int64_t>(tasks.size());
-  for (const PendingTask& task : tasks) put_back(task, task.batch >= 0 || &task == &tasks.front());
+  for (const PendingTask& task : tasks) put_back(task, &task == &tasks.front());
   for (const Finished& one : std::exchange(lost.unsaved, {})) {
     uncount(one.task, one.report);
     put_back(one.task, false);
@@ -186,7 +186,7 @@ void Master::lose(int rank) {
 }
 
 void Master::put_back(PendingTask task, bool crashed) {
-  if (crashed) ++task.crashes, task.batch = -1;
+  if (crashed) ++task.crashes;
   if (task.crashes >= timeouts_.max_crashes && !stopping_ && callbacks_.crashed) {
     count(task, Report(task.index, TaskOutcome::crashed, 0, callbacks_.crashed(task.index, task.crashes)));
     return;
@@ -274,7 +274,7 @@ bool Master::next_runs_alone() const {
 
 bool Master::may_hold_another(const Worker& worker) const {
   constexpr double margin = 2;  // costs are estimates
-  if (worker.tasks.size() != 1 || pool_[next_].batch >= 0 || pool_[next_].crashes > 0) return false;
+  if (worker.tasks.size() != 1 || pool_[next_].crashes > 0) return false;
   const TimeBudget::Seconds begins = now_() - begin_ + timeouts_.time.expected(worker.tasks.front());
   if (!timeouts_.time.fits(pool_[next_], begins)) return false;
   const double second = pool_[next_].cost;
@@ -283,18 +283,12 @@ bool Master::may_hold_another(const Worker& worker) const {
 }
 
 void Master::assign(int rank) {
-  const PendingTask first = pool_[next_];
-  Assign assign;
-  do {
-    const PendingTask& task = pool_[next_++];
-    pool_cost_ -= task.cost;
-    worker(rank).tasks.push_back(task);
-    ++in_flight_;
-    assign.add(task.index);
-  } while (first.batch >= 0 && assign.count < Assign::most && next_ < pool_.size() &&
-           pool_[next_].batch == first.batch && pool_[next_].cost == first.cost);
+  const PendingTask& task = pool_[next_++];
+  pool_cost_ -= task.cost;
+  worker(rank).tasks.push_back(task);
+  ++in_flight_;
   any_begun_ = true;
-  channel_->send(rank, assign);
+  channel_->send(rank, Assign{task.index});
 }
 
 }  // namespace rodsweep

@@ -1,5 +1,4 @@
-// Assigns the tasks of a sweep to workers: longest first (by cost, ties by index), one to each idle worker. Tasks that
-// are evaluated together are assigned together, up to the batch size.
+// Assigns the tasks of a sweep to workers: longest first (by cost, ties by index), one to each idle worker.
 //
 // A worker that runs a task gets a second one only if enough tasks are left: they must keep all workers busy for at
 // least twice the time of both its tasks (by cost). So no worker waits for an assignment in mid-sweep, and at the end

@@ -9,9 +9,8 @@ namespace rodsweep {
 struct PendingTask {
   std::int64_t index = 0;
   double cost = 0;
-  std::int64_t batch = -1;  ///< tasks of equal cost and batch may be evaluated together; -1: this one alone
-  int crashes = 0;          ///< workers lost while running it
-  double tried_s = 0;       ///< its longest abandoned try
+  int crashes = 0;                                           ///< workers lost while running it
+  double tried_s = 0;                                        ///< its longest abandoned try
   double limit_s = std::numeric_limits<double>::infinity();  ///< its own time limit
 };
 

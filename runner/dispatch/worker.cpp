@@ -13,15 +13,7 @@ constexpr std::chrono::milliseconds look_pause{5};
 
 }  // namespace
 
-BatchBody one_by_one(TaskBody body) {
-  return [body = std::move(body)](const std::vector<std::int64_t>& tasks, const StopRequested& stop) {
-    std::vector<TaskResult> results;
-    for (const std::int64_t task : tasks) results.push_back(body(task, stop));
-    return results;
-  };
-}
-
-Worker::Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running,
+Worker::Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running,
                Heartbeat heartbeat, TimeSource now)
     : channel_(&channel),
       body_(std::move(body)),
@@ -29,11 +21,6 @@ Worker::Worker(Channel& channel, BatchBody body, std::function<int()> signal, st
       while_running_(std::move(while_running)),
       heartbeat_(std::move(heartbeat)),
       now_(now) {}
-
-Worker::Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running,
-               Heartbeat heartbeat, TimeSource now)
-    : Worker(channel, one_by_one(std::move(body)), std::move(signal), std::move(while_running), std::move(heartbeat),
-             now) {}
 
 bool Worker::run() {
   Backoff backoff;
@@ -52,9 +39,9 @@ Worker::Step Worker::step() {
   beat();
   if (stopping_) give_back();
   if (!hand_.empty()) {
-    const std::vector<std::int64_t> tasks = std::move(hand_.front());
+    const std::int64_t task = hand_.front();
     hand_.pop_front();
-    run(tasks);
+    run(task);
     return Step::worked;
   }
   if (while_running_) while_running_();
@@ -63,8 +50,8 @@ Worker::Step Worker::step() {
 }
 
 void Worker::give_back() {
-  for (const std::vector<std::int64_t>& tasks : std::exchange(hand_, {}))
-    for (const std::int64_t task : tasks) channel_->send(master, Report(task, TaskOutcome::pending, 0, ""));
+  for (const std::int64_t task : std::exchange(hand_, {}))
+    channel_->send(master, Report(task, TaskOutcome::pending, 0, ""));
 }
 
 bool Worker::receive() {
@@ -72,7 +59,7 @@ bool Worker::receive() {
   while (const auto envelope = channel_->probe()) {
     any = true;
     switch (envelope->tag) {
-      case Tag::assign: hand_.push_back(channel_->receive<Assign>(*envelope).tasks()); break;
+      case Tag::assign: hand_.push_back(channel_->receive<Assign>(*envelope).task); break;
       case Tag::stop: channel_->receive<Stop>(*envelope), stopping_ = true; break;
       case Tag::finish:  // during a task: the master declared this rank lost and reassigned its tasks
         ranks_lost_ = channel_->receive<Finish>(*envelope).ranks_lost;
@@ -98,18 +85,14 @@ void Worker::beat() {
   channel_->send(master, Alive{heartbeat_.saved()});
 }
 
-void Worker::run(const std::vector<std::int64_t>& tasks) {
+void Worker::run(std::int64_t task) {
   const TimePoint begin = now_();
   looked_ = begin;
-  const std::vector<TaskResult> results = body_(tasks, [this] { return stop_requested(); });
+  const TaskResult result = body_(task, [this] { return stop_requested(); });
   const std::chrono::duration<double> busy = now_() - begin;
-  const double share_s = busy.count() / static_cast<double>(tasks.size());
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const TaskResult& result = results.at(i);
-    Report report(tasks[i], result.outcome, share_s, result.message);
-    if (result.outcome == TaskOutcome::pending) report.share = result.share;
-    channel_->send(master, report);
-  }
+  Report report(task, result.outcome, busy.count(), result.message);
+  if (result.outcome == TaskOutcome::pending) report.share = result.share;
+  channel_->send(master, report);
 }
 
 bool Worker::stop_requested() {

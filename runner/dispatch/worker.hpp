@@ -1,4 +1,4 @@
-// Runs the tasks that the master assigns, one assignment after the other, and reports each task.
+// Runs the tasks that the master assigns, one after the other, and reports each task.
 //
 // A running task calls StopRequested between time steps and within solves, and while it runs a user's code from another
 // thread (solver/linear/interruption.hpp). This call also reads messages every few milliseconds and sends a heartbeat about
@@ -11,8 +11,6 @@
 #include <deque>
 #include <functional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "runner/dispatch/channel.hpp"
 #include "runner/dispatch/stop_requested.hpp"
@@ -29,12 +27,6 @@ struct TaskResult {
 /// Runs one task.
 using TaskBody = std::function<TaskResult(std::int64_t task, const StopRequested& stop)>;
 
-/// Runs the tasks of an assignment; one result per task.
-using BatchBody =
-    std::function<std::vector<TaskResult>(const std::vector<std::int64_t>& tasks, const StopRequested& stop)>;
-
-BatchBody one_by_one(TaskBody body);
-
 /// The heartbeat of a worker.
 struct Heartbeat {
   std::chrono::duration<double> interval{1};
@@ -45,12 +37,10 @@ class Worker {
  public:
   /// `signal` returns the signal that this rank received, 0 for none. `while_running` is called every few milliseconds
   /// during a task, and while idle (on a single rank it runs the master).
-  Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running = {},
-         Heartbeat heartbeat = {}, TimeSource now = std::chrono::steady_clock::now);
   Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running = {},
          Heartbeat heartbeat = {}, TimeSource now = std::chrono::steady_clock::now);
 
-  /// Handles all arrived messages, then runs at most one assignment.
+  /// Handles all arrived messages, then runs at most one task.
   enum class Step { worked, waited, finished };
   Step step();
 
@@ -62,16 +52,16 @@ class Worker {
   void heed_signal();
   void beat();
   void give_back();
-  void run(const std::vector<std::int64_t>& tasks);
+  void run(std::int64_t task);
   bool stop_requested();
 
   Channel* channel_;
-  BatchBody body_;
+  TaskBody body_;
   std::function<int()> signal_;
   std::function<void()> while_running_;
   Heartbeat heartbeat_;
   TimeSource now_;
-  std::deque<std::vector<std::int64_t>> hand_;  ///< assignments
+  std::deque<std::int64_t> hand_;  ///< assigned tasks
 
   bool stopping_ = false, dismissed_ = false, ranks_lost_ = false, told_ = false;
   TimePoint looked_{}, beat_{};

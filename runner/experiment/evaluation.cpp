@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "runner/dataset/stored_systems.hpp"
-#include "runner/experiment/batched_evaluation.hpp"
 #include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/measured_solve.hpp"
 #include "runner/experiment/projections.hpp"
@@ -74,8 +73,8 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
 
 }  // namespace
 
-static bool evaluate_alone(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
-                           const StopRequested& stop, const ObserveSystem& observe) {
+static bool run_task(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
+                     const StopRequested& stop, const ObserveSystem& observe) {
   const Stopwatch watch(now);
   bool finished = true;
   try {
@@ -95,18 +94,17 @@ static bool evaluate_alone(TimeSource now, const Task& task, const TaskSpec& spe
 }
 
 bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
-  return evaluate_by_clock(std::chrono::steady_clock::now, task, spec, record, stop);
+  return run_task(std::chrono::steady_clock::now, task, spec, record, stop, nullptr);
 }
 
 bool evaluate_by_clock(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
                        const StopRequested& stop) {
-  if (steps_in_batches(spec)) return evaluate_batch({{task, spec, &record}}, stop);
-  return evaluate_alone(now, task, spec, record, stop, nullptr);
+  return run_task(now, task, spec, record, stop, nullptr);
 }
 
 bool evaluate_observed(const ObserveSystem& observe, const Task& task, const TaskSpec& spec, TaskRecord& record,
                        const StopRequested& stop) {
-  return evaluate_alone(std::chrono::steady_clock::now, task, spec, record, stop, observe);
+  return run_task(std::chrono::steady_clock::now, task, spec, record, stop, observe);
 }
 
 }  // namespace rodsweep

@@ -20,7 +20,7 @@ bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
 using ObserveSystem =
     std::function<void(const Rod&, const LinearSystem&, const SolvePosition&, const VectorX& solution)>;
 
-/// The same task, seen system by system. Rods step one by one, so solutions of a data set's batch differ by rounding.
+/// The same task, seen system by system.
 bool evaluate_observed(const ObserveSystem& observe, const Task& task, const TaskSpec& spec, TaskRecord& record,
                        const StopRequested& stop);
 

@@ -1,5 +1,4 @@
 // Records the observables, trajectory frames and outcome of a simulation after each step, and decides when it ends.
-// Used for single tasks and for batches.
 #pragma once
 
 #include <string>

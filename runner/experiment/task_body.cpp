@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <exception>
-#include <map>
 #include <new>
 #include <stdexcept>
 #include <utility>
 
-#include "runner/experiment/batched_evaluation.hpp"
 #include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/measured_solve.hpp"
 #include "runner/file/extension.hpp"
@@ -30,19 +27,20 @@ bool unless_stopped(const StopRequested& stop, Part&& part) {
   }
 }
 
-/// If the task throws, its record keeps only the error message.
-bool evaluate_alone(const TaskRun& run, const AxisSizes& sizes, const Evaluate& evaluate, const StopRequested& stop) {
+/// If the task throws, its record keeps only the error message. False if abandoned.
+bool evaluate_caught(const Task& task, const TaskSpec& spec, const AxisSizes& sizes, const Evaluate& evaluate,
+                     const StopRequested& stop, TaskRecord& record) {
+  std::string message;
   try {
-    return evaluate(run.task, run.spec, *run.record, stop);
+    return evaluate(task, spec, record, stop);
   } catch (const std::bad_alloc&) {
-    run.record->message = out_of_memory_text();
+    message = out_of_memory_text();
   } catch (const std::exception& error) {
-    run.record->message = error.what();
+    message = error.what();
   }
-  const std::string message = std::move(run.record->message);
-  run.record->prepare(run.task, sizes);
-  run.record->outcome = TaskOutcome::error;
-  run.record->message = message;
+  record.prepare(task, sizes);
+  record.outcome = TaskOutcome::error;
+  record.message = message;
   return true;
 }
 
@@ -69,62 +67,36 @@ bool complete_task(const Plan& plan, const Extension& extension, const Evaluate&
 
 }  // namespace
 
-std::vector<std::int64_t> batches(const Plan& plan) {
-  if (plan.rows(Rows::system) == 0) return std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1);
-  std::map<BatchKey, std::int64_t> numbers;
-  std::vector<std::int64_t> out;
-  for (const Task& task : plan.tasks()) {
-    const TaskSpec spec = plan.spec(task.index);
-    const auto next = static_cast<std::int64_t>(numbers.size());
-    out.push_back(steps_in_batches(spec) ? numbers.try_emplace(batch_key(spec), next).first->second : -1);
-  }
-  return out;
-}
-
-BatchBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
+TaskBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
   return [&plan, write = std::move(write), evaluate = std::move(evaluate), sizes = axis_sizes(plan),
-          records = std::vector<TaskRecord>()](const std::vector<std::int64_t>& tasks,
-                                               const StopRequested& stop) mutable -> std::vector<TaskResult> {
-    records.resize(std::max(records.size(), tasks.size()));  // their memory is reused
-    std::vector<TaskRun> runs;
-    for (std::size_t i = 0; i < tasks.size(); ++i) {
-      const Task task = plan.task(tasks[i]);
-      try {
-        if (!unless_stopped(stop, [&] { records[i].prepare(task, sizes); }))
-          return std::vector<TaskResult>(tasks.size());
-      } catch (const std::bad_alloc&) {
-        throw std::runtime_error(fmt::format("the results of task {} do not fit: {}", task.index,
-                                             out_of_memory_text() + ", or record less (\"record\" in the job)"));
-      }
-      runs.push_back({task, plan.spec(tasks[i]), &records[i]});
+          record = TaskRecord()](std::int64_t index, const StopRequested& stop) mutable -> TaskResult {
+    const Task task = plan.task(index);
+    try {
+      if (!unless_stopped(stop, [&] { record.prepare(task, sizes); })) return {};
+    } catch (const std::bad_alloc&) {
+      throw std::runtime_error(fmt::format("the results of task {} do not fit: {}", index,
+                                           out_of_memory_text() + ", or record less (\"record\" in the job)"));
     }
-    std::vector<TaskResult> results(tasks.size());
-    if (runs.size() == 1 ? !evaluate_alone(runs.front(), sizes, evaluate, stop) : !evaluate_batch(runs, stop)) {
-      for (std::size_t i = 0; i < tasks.size(); ++i)
-        results[i].share = records[i].tasks.steps_done[0] / static_cast<double>(runs[i].task.steps);
-      return results;
-    }
-    for (std::size_t i = 0; i < tasks.size(); ++i) {
-      if (unless_stopped(stop, [&] { write(runs[i].task, records[i], nullptr); }))
-        results[i] = {records[i].outcome, records[i].message};
-    }
-    return results;
+    if (!evaluate_caught(task, plan.spec(index), sizes, evaluate, stop, record))
+      return {TaskOutcome::pending, "", record.tasks.steps_done[0] / static_cast<double>(task.steps)};
+    if (!unless_stopped(stop, [&] { write(task, record, nullptr); })) return {};
+    return {record.outcome, record.message};
   };
 }
 
-BatchBody extending_body(const Plan& plan, const Extension& extension, WriteRecord write,
-                         std::function<void(const std::string&)> warn, Evaluate evaluate) {
-  return one_by_one([&plan, &extension, write, warn = std::move(warn), evaluate, run = task_body(plan, write, evaluate),
-                     sizes = axis_sizes(plan), taken = TaskRecord(),
-                     record = TaskRecord()](std::int64_t index, const StopRequested& stop) mutable -> TaskResult {
+TaskBody extending_body(const Plan& plan, const Extension& extension, WriteRecord write,
+                        std::function<void(const std::string&)> warn, Evaluate evaluate) {
+  return [&plan, &extension, write, warn = std::move(warn), evaluate, run = task_body(plan, write, evaluate),
+          sizes = axis_sizes(plan), taken = TaskRecord(),
+          record = TaskRecord()](std::int64_t index, const StopRequested& stop) mutable -> TaskResult {
     const Task task = plan.task(index);
     const Extension::Use use = extension.use(index);
-    if (use == Extension::Use::run) return run({index}, stop).front();
+    if (use == Extension::Use::run) return run(index, stop);
     taken.prepare(task, sizes);
     if (!extension.take(index, taken)) {
       warn(fmt::format("task {} of {} is damaged (wrong checksum); it is run again as task {}", extension.source(index),
                        extension.path().native(), index));
-      return run({index}, stop).front();
+      return run(index, stop);
     }
     if (use == Extension::Use::copy) {
       const TaskOrigin origin = extension.origin(index);
@@ -135,7 +107,7 @@ BatchBody extending_body(const Plan& plan, const Extension& extension, WriteReco
     if (!complete_task(plan, extension, evaluate, stop, task, taken, record)) return {};
     if (!unless_stopped(stop, [&] { write(task, record, nullptr); })) return {};
     return {record.outcome, record.message};
-  });
+  };
 }
 
 }  // namespace rodsweep

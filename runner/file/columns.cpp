@@ -47,9 +47,8 @@ std::vector<Column> all_columns() {
       column<&R::tasks, &Tasks::penetration>(
           "/tasks/penetration", Rows::contact_task, none, "1",
           "deepest overlap of two bodies after any step, over the smaller radius; NaN without contact"),
-      column<&R::tasks, &Tasks::momentum_residual>(
-          "/tasks/momentum_residual", Rows::task, none, "1",
-          "largest /steps/momentum_residual; NaN if rods are stepped in batches"),
+      column<&R::tasks, &Tasks::momentum_residual>("/tasks/momentum_residual", Rows::task, none, "1",
+                                                   "largest /steps/momentum_residual"),
       column<&R::tasks, &Tasks::counted, &Sums::iterations>(
           "/tasks/iterations_sum", Rows::task, ladder, "1",
           "CG iterations summed over the first Newton iteration of every step; a solve that misses the tolerance "

@@ -1,4 +1,4 @@
-// 6x6 blocks and vectors of six of several rods at once, one rod per lane: the kernels of a block LDL^T.
+// 6x6 blocks and vectors of six of several struts at once, one strut per lane: the kernels of a block LDL^T.
 //
 // Symmetric blocks store only the lower triangle, by rows; other blocks are arrays of six columns. L is unit lower
 // triangular, stored by rows below the diagonal. Loops over the entries of a triangle unroll, which keeps them in

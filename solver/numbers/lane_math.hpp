@@ -1,6 +1,5 @@
-// Vectors and quaternions of as many segments as a register has lanes, one segment per lane: neighbours on one rod
-// (lane_records.hpp), or the same segment of several rods (batch/). Functions that single joints use as well are
-// templates of the number type T, a double or a Lane.
+// Vectors and quaternions of as many segments as a register has lanes, one segment per lane (lane_records.hpp).
+// Functions that single joints use as well are templates of the number type T, a double or a Lane.
 //
 // The rotation maps are those of rotation.hpp.
 #pragma once
@@ -68,14 +67,7 @@ inline LaneQuaternion select(const LaneMask& where, const LaneQuaternion& a, con
 
 inline Lane all_lanes(double value) { return Lane{} + value; }
 
-inline bool any(const LaneMask& mask) {
-  bool out = false;
-  for (int lane = 0; lane < lane_width; ++lane) out |= mask[lane] != 0;
-  return out;
-}
-
 inline Lane absolute(const Lane& value) { return value < 0 ? -value : value; }
-inline Lane larger(const Lane& a, const Lane& b) { return a < b ? b : a; }
 
 /// cos(2 pi t), to 1e-13: the sine series of 2 pi (1/4 - |t - round(t)|).
 inline Lane cosine_of_turns(const Lane& t) {
@@ -127,14 +119,6 @@ inline LaneQuaternion rotated(const LaneQuaternion& q, const LaneVector& theta) 
   const LaneQuaternion turned = {q.w - h.x * q.x - h.y * q.y - h.z * q.z, q.x + h.x * q.w + h.y * q.z - h.z * q.y,
                                  q.y + h.y * q.w + h.z * q.x - h.x * q.z, q.z + h.z * q.w + h.x * q.y - h.y * q.x};
   return 1 / square_root(dot(turned, turned)) * turned;
-}
-
-/// normalise(q + q [0, phi] / 2).
-inline LaneQuaternion turned(const LaneQuaternion& q, const LaneVector& phi) {
-  const LaneVector h = all_lanes(0.5) * phi;
-  const LaneQuaternion moved = {q.w - h.x * q.x - h.y * q.y - h.z * q.z, q.x + h.x * q.w - h.y * q.z + h.z * q.y,
-                                q.y + h.y * q.w - h.z * q.x + h.x * q.z, q.z + h.z * q.w - h.x * q.y + h.y * q.x};
-  return 1 / square_root(dot(moved, moved)) * moved;
 }
 
 /// 2 Im(d) / Re(d), d = q conj(q_old).

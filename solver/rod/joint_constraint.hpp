@@ -41,17 +41,6 @@ inline JointTurn<T> joint_turn(const Quad<T>& a, const Quad<T>& b, const JointSh
   return {e, 1 / (1 + e.w)};
 }
 
-template <class T>
-[[gnu::noinline]] Quad<T> kinked_turn(const JointTurn<T>& turn, const JointKink<T>& kink) {
-  return product(product(kink.frame_a, turn.e), conjugate(kink.frame_b));
-}
-
-/// d = conj(q_a) q_b.
-template <class T>
-inline Quad<T> relative_turn(const JointTurn<T>& turn, const JointShape<T>& shape) {
-  return shape.kink ? kinked_turn(turn, *shape.kink) : turn.e;
-}
-
 /// H = R(e^(1/2)) = w I + [v]x + v v^T / (1 + w).
 template <class T>
 inline Triples<T> half_turn(const JointTurn<T>& turn) {
@@ -115,20 +104,14 @@ struct Wrenches {
   Wrench<T> on_a, on_b;
 };
 
-/// J^T y. `on_a` and `on_b` are y's stretch-shear rows in the frames of the segments.
-template <class T>
-inline Wrenches<T> impulses(const JointTurn<T>& turn, const JointShape<T>& shape, const Triple<T>& on_a,
-                            const Triple<T>& on_b, const Triple<T>& bend) {
-  const Triple<T> along = turn.e.w * bend, across = cross(Triple<T>{turn.e.x, turn.e.y, turn.e.z}, bend);
-  return {{shape.inverse_length * on_a, cross(shape.arm_a, on_a) - to_a(shape, along + across)},
-          {-shape.inverse_length * on_b, to_b(shape, along - across) - cross(shape.arm_b, on_b)}};
-}
-
-/// J^T y with y's rows in the joint's frame; `half` is H.
+/// J^T y; `half` is H, `stretch` and `bend` are y.
 template <class T>
 inline Wrenches<T> impulses(const JointTurn<T>& turn, const Triples<T>& half, const JointShape<T>& shape,
                             const Triple<T>& stretch, const Triple<T>& bend) {
-  return impulses(turn, shape, to_a(shape, half * stretch), to_b(shape, transposed_product(half, stretch)), bend);
+  const Triple<T> on_a = to_a(shape, half * stretch), on_b = to_b(shape, transposed_product(half, stretch));
+  const Triple<T> along = turn.e.w * bend, across = cross(Triple<T>{turn.e.x, turn.e.y, turn.e.z}, bend);
+  return {{shape.inverse_length * on_a, cross(shape.arm_a, on_a) - to_a(shape, along + across)},
+          {-shape.inverse_length * on_b, to_b(shape, along - across) - cross(shape.arm_b, on_b)}};
 }
 
 }  // namespace rodsweep

@@ -1,6 +1,7 @@
 #include "solver/rod/linearization.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "solver/numbers/lane_records.hpp"
 #include "solver/numbers/lane_vectors.hpp"
@@ -127,8 +128,7 @@ JointTurn<double> turn_of(const Rod& rod, const Joint& joint, const JointShape<d
   return joint_turn(numbers(orientation_of_a(rod, joint)), numbers(orientation_of_b(rod, joint)), shape);
 }
 
-}  // namespace
-
+/// The constants of as many joints as a register has lanes. If any of them is not straight, `kinks` gets its frames.
 JointShape<Lane> joint_shape(const std::array<const Joint*, lane_width>& of, JointKinks& kinks) {
   bool kinked = false;
   Quaternion frame_a[lane_width], frame_b[lane_width];
@@ -155,6 +155,8 @@ JointShape<Lane> joint_shape(const std::array<const Joint*, lane_width>& of, Joi
   }
   return shape;
 }
+
+}  // namespace
 
 Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.joint_count())) {
   const std::size_t count = rod.joints.size();

@@ -15,7 +15,6 @@
 // the segments: that term is proportional to the gap, and without it Newton's iterates are those of C_s in the world.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -35,9 +34,6 @@ struct JointJacobian {
 };
 
 using JointKinks = std::vector<std::shared_ptr<const JointKink<Lane>>>;
-
-/// The constants of as many joints as a register has lanes. If any of them is not straight, `kinks` gets its frames.
-JointShape<Lane> joint_shape(const std::array<const Joint*, lane_width>& of, JointKinks& kinks);
 
 struct Linearization {
   std::vector<JointJacobian> joints;     ///< padded to whole registers with copies of the last

@@ -27,11 +27,14 @@ double largest(const Lane8& squared_sizes) { return std::sqrt(std::max(squared_s
 void put_inertial_impulses(const Rod& rod, MomentumBalance& out) {
   constexpr std::ptrdiff_t stride = sizeof(Lane8) / sizeof(double);
   std::size_t s = 0;
-  for (const Inertia<Lane>& inertia : out.inertia) {
+  for (const LaneInertia& inertia : out.inertia) {
     const int count = rod.segment_count() - static_cast<int>(s);
-    const auto [force, torque] =
-        impulse_between({load(&rod.free_position[s], count), load(&rod.free_orientation[s], count)},
-                        {load(&rod.position[s], count), load(&rod.orientation[s], count)}, inertia);
+    const LaneQuaternion orientation = load(&rod.orientation[s], count);
+    const LaneVector moved = load(&rod.position[s], count) - load(&rod.free_position[s], count);
+    const LaneVector force = conjugate(orientation) * (inertia.mass * moved);
+    const LaneQuaternion d = relative(load(&rod.free_orientation[s], count), orientation);
+    const Lane scale = 2 / d.w, across = inertia.transverse * scale;
+    const LaneVector torque = {across * d.x, across * d.y, inertia.axial * scale * d.z};
     double* defect = reinterpret_cast<double*>(&out.defect[s]);
     scatter({force.x, force.y, force.z, torque.x}, defect, stride);
     scatter({torque.y, torque.z, Lane{}, Lane{}}, defect + 4, stride);
@@ -70,12 +73,18 @@ double subtract_joints(const Rod& rod, const Linearization& at, MomentumBalance&
   return largest(carried);
 }
 
+/// M + K across the axis of a segment; `pull` is the sum of f.r over its joints.
+double stiffened(double inertia, double pull) {
+  constexpr double least_turning = 0.5;  // share of the inertia that remains under compression
+  return inertia + std::max(pull, (least_turning - 1) * inertia);
+}
+
 }  // namespace
 
 MomentumBalance::MomentumBalance(const Rod& rod) : pull(rod.segments.size()), least(0) {
   const std::size_t count = rod.segments.size();
   for (std::size_t first = 0; first < count; first += lane_width) {
-    Inertia<Lane>& group = inertia.emplace_back();
+    LaneInertia& group = inertia.emplace_back();
     for (std::size_t lane = 0; lane < lane_width; ++lane) {
       const Segment& segment = rod.segments[std::min(first + lane, count - 1)];
       group.mass[lane] = segment.mass;

@@ -27,34 +27,10 @@
 
 namespace rodsweep {
 
-/// The constants of a segment: mass [kg] and principal inertia [kg m^2].
-template <class T>
-struct Inertia {
-  T mass, transverse, axial;
+/// Mass [kg] and principal inertia [kg m^2] of segments.
+struct LaneInertia {
+  Lane mass, transverse, axial;
 };
-
-template <class T>
-struct SegmentPose {
-  Triple<T> position;
-  Quad<T> orientation;
-};
-
-/// M (p - p*), in the segment's own frame.
-template <class T>
-inline Wrench<T> impulse_between(const SegmentPose<T>& free, const SegmentPose<T>& p, const Inertia<T>& inertia) {
-  const Quad<T> d = relative(free.orientation, p.orientation);
-  const T scale = 2 / d.w, across = inertia.transverse * scale;
-  return {conjugate(p.orientation) * (inertia.mass * (p.position - free.position)),
-          {across * d.x, across * d.y, inertia.axial * scale * d.z}};
-}
-
-/// M + K across the axis of a segment; `pull` is the sum of f.r over its joints.
-template <class T>
-inline T stiffened(const T& inertia, const T& pull) {
-  constexpr double least_turning = 0.5;  // share of the inertia that remains under compression
-  const T least = (least_turning - 1) * inertia;
-  return inertia + (pull < least ? least : pull);
-}
 
 struct MomentumBalance {
   std::vector<Lane8> defect;  ///< g: lanes 0..2 [kg m], 3..5 [kg m^2]; zero if static
@@ -66,7 +42,7 @@ struct MomentumBalance {
   explicit MomentumBalance(const Rod& rod);  ///< sized, not evaluated
 
   /// Constants of as many neighbours as a register has lanes.
-  std::vector<Inertia<Lane>> inertia;
+  std::vector<LaneInertia> inertia;
   std::vector<double> inverse_squared_length;  ///< 1/L^2 of each segment; 0 if static
   double least;                                ///< lower limit of the residual's reference [kg m]
 };

@@ -37,8 +37,6 @@ struct Prescribed {
   std::vector<PrescribedMotion> motions;
   std::vector<GravityChange> gravity;
 
-  bool is_nothing() const { return loads.empty() && motions.empty() && gravity.empty(); }
-
   /// Throws SceneError unless times increase and have factors, and motions begin with the factor 0.
   void check() const;
   /// What an "inextensible" joint may have to hold beside the weight [N].

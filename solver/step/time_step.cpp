@@ -8,7 +8,8 @@
 
 namespace rodsweep {
 
-int balancing_iterations(int most) {
+/// The iterations of a step that try to keep the balance of momentum before the attempt is undone; all if they are few.
+static int balancing_iterations(int most) {
   constexpr int fewest_to_share = 6;
   return most < fewest_to_share ? most : (2 * most + 2) / 3;
 }
@@ -85,7 +86,10 @@ StepReport TimeStepper::step(Projection& projection) {
   return report;
 }
 
-bool TimeStepper::is_lost() const { return !(newton_residual_ < lost_joints && momentum_residual_ < lost_momentum); }
+bool TimeStepper::is_lost() const {
+  constexpr double lost_joints = 1e-6, lost_momentum = 0.1;
+  return !(newton_residual_ < lost_joints && momentum_residual_ < lost_momentum);
+}
 
 void TimeStepper::start_from_last_step() {
   for (std::size_t r = 0; r < scene_.rods.size(); ++r)

@@ -41,11 +41,6 @@ struct StepReport {
   double penetration = 0, contact_residual = 0;    ///< at the end of the step, see ContactState
 };
 
-/// The iterations of a step that try to keep the balance of momentum before the attempt is undone; all if they are few.
-int balancing_iterations(int most);
-/// The attempt is undone if max |C + alpha~ lambda| or the momentum residual is not below these.
-constexpr double lost_joints = 1e-6, lost_momentum = 0.1;
-
 /// dt_c of a step with h: it converts compliances to alpha~ and multipliers to forces.
 double constraint_dt(double damping_per_s, double h);
 inline double constraint_dt(const Scene& scene, double h) { return constraint_dt(scene.damping_per_s, h); }

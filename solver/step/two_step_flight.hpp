@@ -10,7 +10,7 @@
 // axis, i_a w_a, changes by torques about it alone; it is not taken from L, or an error of t~ would spin a thin segment.
 #pragma once
 
-#include "solver/rod/momentum_balance.hpp"
+#include "solver/numbers/lane_math.hpp"
 
 namespace rodsweep {
 
@@ -21,7 +21,10 @@ struct LaneMotion {
   LaneVector velocity, spin;
 };
 
-using LanePose = SegmentPose<Lane>;
+struct LanePose {
+  LaneVector position;
+  LaneQuaternion orientation;
+};
 
 inline LaneVector past(const LaneVector& now, const LaneVector& before) {
   return all_lanes(4.0 / 3) * now - all_lanes(1.0 / 3) * before;

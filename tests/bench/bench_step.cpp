@@ -1,5 +1,5 @@
-// The cost of the direct time step: its parts, its scaling with the number of segments, a batch of eight rods over one
-// rod, and an iteration of Gauss-Seidel over one of Newton.
+// The cost of the direct time step: its parts, its scaling with the number of segments, and an iteration of Gauss-Seidel
+// over one of Newton.
 // Google Benchmark times the cases; final tables compare their medians with the targets, as ratios from this run.
 #include <benchmark/benchmark.h>
 
@@ -8,9 +8,9 @@
 #include <map>
 #include <optional>
 
-#include "solver/batch/batched_step.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/pbd_projection.hpp"
+#include "solver/step/time_step.hpp"
 #include "solver/step/xpbd_projection.hpp"
 #include "tests/bench/medians.hpp"
 
@@ -24,13 +24,13 @@ int segments_of(const benchmark::State& state) { return static_cast<int>(state.r
 const StepSettings one_iteration{0.02, 1, 0};
 
 /// Segments as long as they are wide, all in motion: along a rod at rest, decaying multipliers become denormal numbers,
-/// which are slow. `variant` differs for each rod of a batch.
-Scene moving_scene(int segments, int variant = 0) {
+/// which are slow.
+Scene moving_scene(int segments) {
   BendingRod rod;
   rod.segments = segments;
-  rod.length_m = (0.1 + 0.01 * variant) * segments;
-  rod.initial_angle_deg = -80 - variant;
-  rod.youngs_modulus_pa = 1e6 * (1 + variant);
+  rod.length_m = 0.1 * segments;
+  rod.initial_angle_deg = -80;
+  rod.youngs_modulus_pa = 1e6;
   Scene scene = build_scene(rod);
   for (int s = 1; s < segments; ++s)
     scene.rods[0].angular_velocity[static_cast<std::size_t>(s)] = {std::sin(1.7 * s), std::cos(2.3 * s), std::sin(s)};
@@ -96,29 +96,6 @@ void step_by(benchmark::State& state, Integrator integrator) {
 
 void step_euler(benchmark::State& state) { step_by(state, Integrator::euler); }
 void step_bdf2(benchmark::State& state) { step_by(state, Integrator::bdf2); }
-
-void step_together(benchmark::State& state, std::map<int, BatchedStepper>& made,
-                   std::optional<double> momentum_tolerance) {
-  auto at = made.find(segments_of(state));
-  if (at == made.end()) {
-    std::vector<Scene> scenes;
-    for (int rod = 0; rod < BatchedRods::lanes; ++rod) scenes.push_back(moving_scene(segments_of(state), rod));
-    at = made.try_emplace(segments_of(state), scenes, one_iteration, momentum_tolerance).first;
-  }
-  for (auto _ : state)
-    for (const StepReport& report : at->second.step())
-      if (report.outcome != SolveOutcome::converged) state.SkipWithError("a solve failed");
-}
-
-void batched_step(benchmark::State& state) {
-  static std::map<int, BatchedStepper> made;
-  step_together(state, made, {});
-}
-
-void batched_balanced_step(benchmark::State& state) {
-  static std::map<int, BatchedStepper> made;
-  step_together(state, made, 0);
-}
 
 void linearize(benchmark::State& state) {
   Single& single = Single::of(state);
@@ -193,17 +170,14 @@ double us(const Medians& median, const char* name, int n) { return median(name, 
 void print_summary(const Medians& median) {
   std::printf(
       "\nDirect step, one Newton iteration, per segment (targets: at most 0.5 us from N = 30 on, assembly at most"
-      " 25 %%, a batch of %d at least 3 times the throughput)\n",
-      BatchedRods::lanes);
-  std::printf("%6s %10s %15s %14s %16s %11s %13s %12s\n", "N", "step [us]", "linearise [%]", "assemble [%]",
-              "factor+solve [%]", "update [%]", "batched [us]", "throughput");
+      " 25 %%)\n");
+  std::printf("%6s %10s %15s %14s %16s %11s\n", "N", "step [us]", "linearise [%]", "assemble [%]", "factor+solve [%]",
+              "update [%]");
   for (const int n : sizes) {
     const double whole = us(median, "step", n), assembly = us(median, "assemble", n);
-    const double batched = us(median, "batched_step", n) / BatchedRods::lanes;
-    std::printf("%6d %10.3f %15.0f %14.0f %16.0f %11.0f %13.3f %12.1f\n", n, whole,
-                100 * us(median, "linearize", n) / whole, 100 * assembly / whole,
-                100 * us(median, "factor_and_solve", n) / whole, 100 * us(median, "update", n) / whole, batched,
-                whole / batched);
+    std::printf("%6d %10.3f %15.0f %14.0f %16.0f %11.0f\n", n, whole, 100 * us(median, "linearize", n) / whole,
+                100 * assembly / whole, 100 * us(median, "factor_and_solve", n) / whole,
+                100 * us(median, "update", n) / whole);
   }
   std::printf(
       "\nOne iteration of each projection, per segment (a step takes one to six of Newton's, tens of the others)\n");
@@ -217,12 +191,11 @@ void print_summary(const Medians& median) {
 }
 
 void print_balanced(const Medians& median) {
-  std::printf("\nOne Newton iteration in balance of momentum over one of the paper's step, alone and in a batch\n");
-  std::printf("%6s %10s %12s %8s %10s\n", "N", "paper [us]", "balance [us]", "ratio", "in a batch");
+  std::printf("\nOne Newton iteration in balance of momentum over one of the paper's step\n");
+  std::printf("%6s %10s %12s %8s\n", "N", "paper [us]", "balance [us]", "ratio");
   for (const int n : sizes) {
     const double paper = us(median, "newton", n), balanced = us(median, "newton_balanced", n);
-    std::printf("%6d %10.3f %12.3f %8.2f %10.2f\n", n, paper, balanced, balanced / paper,
-                us(median, "batched_balanced_step", n) / us(median, "batched_step", n));
+    std::printf("%6d %10.3f %12.3f %8.2f\n", n, paper, balanced, balanced / paper);
   }
 }
 
@@ -241,14 +214,12 @@ int main(int argc, char** argv) {
   register_cases({{"step", step},
                   {"step_euler", step_euler},
                   {"step_bdf2", step_bdf2},
-                  {"batched_step", batched_step},
                   {"linearize", linearize},
                   {"assemble", assemble},
                   {"factor_and_solve", factor_and_solve},
                   {"update", update},
                   {"newton", newton},
                   {"newton_balanced", newton_balanced},
-                  {"batched_balanced_step", batched_balanced_step},
                   {"xpbd", xpbd},
                   {"pbd", pbd}},
                  sizes);

@@ -39,8 +39,7 @@ struct Inbox {
   std::vector<std::int64_t> assigned() {
     std::vector<std::int64_t> tasks;
     while (const auto envelope = channel->probe()) {
-      if (envelope->tag == Tag::assign)
-        for (const std::int64_t task : channel->receive<Assign>(*envelope).tasks()) tasks.push_back(task);
+      if (envelope->tag == Tag::assign) tasks.push_back(channel->receive<Assign>(*envelope).task);
       if (envelope->tag == Tag::stop) channel->receive<Stop>(*envelope), ++stops;
       if (envelope->tag == Tag::finish) ranks_lost = channel->receive<Finish>(*envelope).ranks_lost, ++finishes;
     }

@@ -130,19 +130,18 @@ void observe(Scene& scene, const Look& look) {
 struct TurnedCase {
   const char* name;
   Scene scene;
-  bool batched = false;
 };
 
 inline std::vector<TurnedCase> turned_cases() {
   std::vector<TurnedCase> out;
   BendingRod bending = bending_rod(12, Clamp::wall);
-  out.push_back({"bending rod", build_scene(bending), true});
+  out.push_back({"bending rod", build_scene(bending)});
   bending.tip_force_n = {1, 2, -20};
   bending.stretch = Stretch::physical;
   out.push_back({"rod that stretches and shears", build_scene(bending)});
   Helix helix;
   helix.segments = 24;
-  out.push_back({"helix", build_scene(helix), true});
+  out.push_back({"helix", build_scene(helix)});
   Ring ring;
   ring.segments = 10;
   out.push_back({"ring", build_scene(ring)});

@@ -184,42 +184,6 @@ TEST_CASE("what a worker's body throws ends the worker") {
   CHECK_THROWS_WITH(worker.step(), "no space left on device");
 }
 
-TEST_CASE("tasks of a batch are handed out together, eight at most and all of one batch") {
-  std::vector<PendingTask> tasks;
-  for (std::int64_t i = 0; i < 11; ++i) tasks.push_back({i, 5, i % 5 == 0 ? 1 : 0});  // 0, 5, 10 are of batch 1
-  tasks.push_back({11, 9, 1});                                                        // so is 11, with another cost
-  tasks.push_back({12, 1, -1});
-  tasks.push_back({13, 1, -1});
-  Sweep sweep(1, tasks);
-  Inbox inbox(sweep.network[1]);
-  std::vector<std::vector<std::int64_t>> assigned;
-  while (sweep.master.step() != Master::Step::finished) {
-    assigned.push_back(inbox.assigned());
-    for (const std::int64_t task : assigned.back()) inbox.report(task);
-  }
-  CHECK(assigned == std::vector<std::vector<std::int64_t>>{{11}, {1, 2, 3, 4, 6, 7, 8, 9}, {0, 5, 10}, {12}, {13}});
-  CHECK(sweep.master.dispatch().left == 0);
-}
-
-TEST_CASE("a worker runs an assignment at once and reports each of its tasks") {
-  Sweep sweep(1, {{0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {3, 1, -1}});
-  std::vector<std::size_t> sizes;
-  const BatchBody body = [&](const std::vector<std::int64_t>& tasks, const StopRequested&) {
-    sizes.push_back(tasks.size());
-    std::vector<TaskResult> results(tasks.size(), {TaskOutcome::ok, ""});
-    if (tasks.size() == 3) results[1] = {TaskOutcome::diverged, "joint gap 12"};
-    return results;
-  };
-  Worker worker(sweep.network[1], body, no_signal);
-  while (sweep.master.step() != Master::Step::finished) worker.step();
-  CHECK(sizes == std::vector<std::size_t>{1, 3});
-  const Dispatch& dispatch = sweep.master.dispatch();
-  CHECK(dispatch.finished[static_cast<std::size_t>(TaskOutcome::ok)] == 3);
-  REQUIRE(dispatch.failures.size() == 1);
-  CHECK(dispatch.failures.front().task == 1);
-  CHECK(dispatch.failures.front().message == "joint gap 12");
-}
-
 TEST_CASE("the message of a task that is ok is a warning, kept once") {
   Sweep sweep(1, {{0, 1}, {1, 1}, {2, 1}});
   const TaskBody body = [](std::int64_t task, const StopRequested&) {

@@ -93,10 +93,7 @@ TEST_CASE("a worker that is dismissed while it works abandons its tasks") {
         return stop() ? TaskResult{} : TaskResult{TaskOutcome::ok, ""};
       },
       [] { return 0; }, {}, {}, test::HandClock::now);
-  Assign assign;
-  assign.add(0);
-  network[0].send(1, assign);
-  network[0].send(1, assign);
+  for (int i = 0; i < 2; ++i) network[0].send(1, Assign{0});
   CHECK(worker.run());
   CHECK(runs == 1);
 }

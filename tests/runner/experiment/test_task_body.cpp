@@ -21,14 +21,14 @@ WriteRecord into(std::vector<TaskRecord>& written) {
 TEST_CASE("a record that was filled is written and its outcome returned") {
   const Plan plan = plan_of(small_job());
   std::vector<TaskRecord> written;
-  BatchBody body =
+  TaskBody body =
       task_body(plan, into(written), [](const Task&, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
         record.outcome = TaskOutcome::diverged;
         record.message = "joint gap 12";
         record.tasks.steps_done[0] = spec.time.steps;
         return true;
       });
-  const TaskResult result = body({0}, never).at(0);
+  const TaskResult result = body(0, never);
   CHECK(result.outcome == TaskOutcome::diverged);
   CHECK(result.message == "joint gap 12");
   REQUIRE(written.size() == 1);
@@ -39,12 +39,12 @@ TEST_CASE("a record that was filled is written and its outcome returned") {
 TEST_CASE("a task that throws is an error with its message, written with sentinels") {
   const Plan plan = plan_of(small_job());
   std::vector<TaskRecord> written;
-  BatchBody body = task_body(plan, into(written),
-                             [](const Task&, const TaskSpec&, TaskRecord& record, const StopRequested&) -> bool {
-                               record.tasks.steps_done[0] = 3;
-                               throw std::runtime_error("the matrix has no diagonal");
-                             });
-  CHECK(body({0}, never).at(0).outcome == TaskOutcome::error);
+  TaskBody body = task_body(plan, into(written),
+                            [](const Task&, const TaskSpec&, TaskRecord& record, const StopRequested&) -> bool {
+                              record.tasks.steps_done[0] = 3;
+                              throw std::runtime_error("the matrix has no diagonal");
+                            });
+  CHECK(body(0, never).outcome == TaskOutcome::error);
   REQUIRE(written.size() == 1);
   CHECK(written[0].outcome == TaskOutcome::error);
   CHECK(written[0].message == "the matrix has no diagonal");
@@ -54,20 +54,20 @@ TEST_CASE("a task that throws is an error with its message, written with sentine
 TEST_CASE("an abandoned task is not written") {
   const Plan plan = plan_of(small_job());
   std::vector<TaskRecord> written;
-  BatchBody body =
+  TaskBody body =
       task_body(plan, into(written),
                 [](const Task&, const TaskSpec&, TaskRecord&, const StopRequested& stop) { return !stop(); });
-  CHECK(body({0}, [] { return true; }).at(0).outcome == TaskOutcome::pending);
+  CHECK(body(0, [] { return true; }).outcome == TaskOutcome::pending);
   CHECK(written.empty());
 }
 
 TEST_CASE("a failing write is no outcome of the task") {
   const Plan plan = plan_of(small_job());
-  BatchBody body = task_body(
+  TaskBody body = task_body(
       plan,
       [](const Task&, const TaskRecord&, const TaskOrigin*) { throw std::runtime_error("no space left on device"); },
       [](const Task&, const TaskSpec&, TaskRecord&, const StopRequested&) { return true; });
-  CHECK_THROWS_WITH(body({0}, never), "no space left on device");
+  CHECK_THROWS_WITH(body(0, never), "no space left on device");
 }
 
 TEST_CASE("outcomes of tasks keep the numbers and names that files hold") {

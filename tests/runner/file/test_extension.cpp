@@ -186,11 +186,11 @@ TEST_CASE(
     written += origin == nullptr;
   };
   const auto warn = [](const std::string&) { FAIL("no damage"); };
-  BatchBody body = extending_body(plan, extension, write, warn, evaluate);
-  CHECK(body({3}, {}).at(0).outcome == TaskOutcome::ok);
+  TaskBody body = extending_body(plan, extension, write, warn, evaluate);
+  CHECK(body(3, {}).outcome == TaskOutcome::ok);
   CHECK(written == 1);
   gap = 1;
-  const std::string text = message_of<FileError>([&] { body({4}, {}); });
+  const std::string text = message_of<FileError>([&] { body(4, {}); });
   CHECK_THAT(text, StartsWith("task 4, repeated for its new guesses, differs from " + (folder / "old.h5").native() +
                               ", task 4: /steps/joint_gap, value 1, is "));
   CHECK_THAT(text, Catch::Matchers::Contains("--resume without --extend"));

@@ -94,7 +94,8 @@ TEST_CASE("loads, motions and changes of gravity are read, and their values may 
   const Prescribed other = rod_parameters(moved.spec(0).scene).prescribed;
   CHECK(other.motions.at(0).rotation_deg == Vector3(90, 0, 0));
   CHECK(other.gravity.at(0).by_m_s2 == Vector3(0, 9.81, 0));
-  CHECK(rod_parameters(plan_of(small_job()).spec(0).scene).prescribed.is_nothing());
+  const Prescribed nothing = rod_parameters(plan_of(small_job()).spec(0).scene).prescribed;
+  CHECK((nothing.loads.empty() && nothing.motions.empty() && nothing.gravity.empty()));
 }
 
 TEST_CASE("loads that a job cannot mean are refused with what is allowed") {

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "solver/batch/batched_step.hpp"
 #include "solver/numbers/lane_math.hpp"
 #include "solver/step/observables.hpp"
 #include "tests/solver/simulation.hpp"
@@ -211,14 +210,11 @@ TEST_CASE("a thousand segments sway in gusts for two thousand steps and hold tog
   CHECK(moved < 4);
 }
 
-TEST_CASE("invalid winds are refused, and wind in a batched step") {
+TEST_CASE("invalid winds are refused") {
   WindParameters p = turbulence(0);
   CHECK_THROWS_WITH(Wind(p), "wind: turbulence_modes is 0; must be at least 1");
   p.turbulence_length_m = 0;
   CHECK_THROWS_WITH(Wind(p), "wind: turbulence_length_m is 0; must be positive");
-  BendingRod rod = test::bending_rod(5);
-  rod.wind = breeze({1, 0, 0});
-  CHECK_THROWS_WITH(BatchedStepper({build_scene(rod)}, {}), Catch::StartsWith("scene 0 of a batch has wind"));
 }
 
 }  // namespace rodsweep::test_wind

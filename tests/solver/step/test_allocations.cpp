@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "solver/batch/batched_step.hpp"
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/factor/condensed_factor.hpp"
 #include "solver/guess/initial_guess.hpp"
@@ -138,14 +137,6 @@ TEST_CASE("a step of a lattice, whose matrix is factorised in fronts or condense
     LinearProjection balanced(scene, direct, 1e-6);
     CHECK(allocations_of(scene, balanced) == 0);
   }
-}
-
-TEST_CASE("a batched step allocates nothing") {
-  const std::optional<double> momentum_tolerance = GENERATE(std::optional<double>(), std::optional<double>(1e-9));
-  BatchedStepper batch({test::moving_scene(12), test::moving_scene(12, 3)}, {0.02, 4, 1e-9}, momentum_tolerance);
-  const long before = test::allocations();
-  for (int step = 0; step < 10; ++step) batch.step();
-  CHECK(test::allocations() == before);
 }
 
 TEST_CASE("a step with contacts allocates nothing unless there are more of them or the broad phase searches anew") {

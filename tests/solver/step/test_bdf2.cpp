@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "solver/batch/batched_step.hpp"
 #include "solver/step/observables.hpp"
 #include "solver/step/xpbd_projection.hpp"
 #include "tests/solver/simulation.hpp"
@@ -203,27 +202,6 @@ TEST_CASE("Gauss-Seidel with enough iterations takes the same steps of BDF2 as t
   for (int i = 0; i < 10; ++i) stepper.step(projection);
   // Each of its corrections moves along another Jacobian.
   CHECK(distance(scene, after(start, bdf2(0.01), 0.1)) < 2e-3);
-}
-
-TEST_CASE("a chain alone and in a batch takes the same steps of BDF2, in both kinds of step") {
-  for (const Balance balance : {Balance(), Balance(1e-9)}) {
-    std::vector<Scene> scenes;
-    for (int i = 0; i < 3; ++i) {
-      BendingRod rod = test::bending_rod(15, Clamp::segment);
-      rod.gravity_m_s2 = {2, -9.0 + i, 1};
-      rod.damping_per_s = 0.3 * i;
-      scenes.push_back(build_scene(rod));
-    }
-    BatchedStepper batch(scenes, bdf2(0.02), balance);
-    for (int step = 0; step < 40; ++step) batch.step();
-    for (int i = 0; i < 3; ++i) {
-      Scene scene = scenes[i];
-      batch.write(i, scene);
-      const Scene alone = after(scenes[i], bdf2(0.02), 0.8, balance);
-      CHECK(distance(scene, alone) < 1e-8);
-      CHECK(scene.rods[0].constraint_dt == alone.rods[0].constraint_dt);
-    }
-  }
 }
 
 TEST_CASE("turned, shifted and mirrored scenes move alike under BDF2") {

@@ -1,9 +1,7 @@
-// A scene that is turned and shifted as a whole has the same linear systems, up to rounding, and moves alike in batches
-// and by Gauss-Seidel. tests/laws/every_scene.cpp has the same law for every scene by direct solves.
+// A scene that is turned and shifted as a whole has the same linear systems, up to rounding, and moves alike by
+// Gauss-Seidel. tests/laws/every_scene.cpp has the same law for every scene by direct solves.
 #include <catch2/catch.hpp>
-#include <optional>
 
-#include "solver/batch/batched_step.hpp"
 #include "solver/step/pbd_projection.hpp"
 #include "solver/step/xpbd_projection.hpp"
 #include "tests/solver/simulation.hpp"
@@ -69,29 +67,12 @@ double apart_after_steps(Scene scene, Scene other, const Image& image, P project
   return out;
 }
 
-void in_batch(Scene& scene, const StepSettings& settings, std::optional<double> momentum_tolerance = {}) {
-  BatchedStepper stepper({scene}, settings, momentum_tolerance);
-  for (int step = 0; step < 10; ++step) stepper.step();
-  stepper.write(0, scene);
-}
 void by(Projection&& projection, Scene& scene) {
   TimeStepper stepper(scene, {0.01, 20, 0});
   for (int step = 0; step < 10; ++step) stepper.step(projection);
 }
 
-TEST_CASE("mirrored scenes move alike in batches, in both kinds of step") {
-  for (const TurnedCase& each : test::turned_cases())
-    for (const std::optional<double> momentum_tolerance : {std::optional<double>(), std::optional<double>(1e-9)}) {
-      if (!each.batched) continue;
-      INFO(each.name << (momentum_tolerance ? ", in balance" : ""));
-      const auto image = [](const Vector3& x) { return test::mirrored(x); };
-      CHECK(apart_after_steps(each.scene, test::mirrored(each.scene), image, [&](Scene& scene) {
-              in_batch(scene, {0.01, 20, 1e-12}, momentum_tolerance);
-            }) < 1e-9);
-    }
-}
-
-TEST_CASE("turned scenes move alike in batches, by XPBD and by PBD") {
+TEST_CASE("turned scenes move alike by XPBD and by PBD") {
   for (const TurnedCase& each : test::turned_cases())
     for (const RigidMotion& motion : test::motions) {
       INFO(each.name);
@@ -100,7 +81,6 @@ TEST_CASE("turned scenes move alike in batches, by XPBD and by PBD") {
       };
       CHECK(apart([](Scene& scene) { by(XpbdProjection(scene), scene); }) < 1e-9);
       CHECK(apart([](Scene& scene) { by(PbdProjection(scene, {}), scene); }) < 1e-9);
-      if (each.batched) CHECK(apart([](Scene& scene) { in_batch(scene, {0.02, 6, 1e-9}); }) < 1e-9);
     }
 }
 
