@@ -26,7 +26,7 @@ constexpr const char* exit_codes =
     "  2  error in the command line, a job or a file; nothing was changed\n"
     "  3  the sweep is complete, but some tasks failed\n"
     "  4  stopped early; --resume continues\n"
-    "  5  stopped early; the remaining tasks need a longer --time-limit or more memory\n"
+    "  5  stopped early; the tasks need a longer --time-limit or more memory\n"
     "  6  all workers were lost; --resume continues\n"
     "  7  standard output could not be written; everything else succeeded\n"
     "  8  rerun, compare: the results differ\n"
@@ -107,8 +107,7 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
       ->check(not_negative())
       ->type_name("SECONDS");
   command
-      ->add_option("--time-limit", run.time_limit_s,
-                   "End within this time: start no task that would take longer, abandon running tasks")
+      ->add_option("--time-limit", run.time_limit_s, "End after this time: start no more tasks, abandon running ones")
       ->check(above_zero())
       ->type_name("SECONDS");
   command

@@ -38,7 +38,7 @@ std::string ending(const RunRow& run, bool is_last, const FileSummary& file) {
     case ExitCode::ok: return "all done";
     case ExitCode::tasks_failed: return "complete, but some tasks failed";
     case ExitCode::stopped: return "stopped early";
-    case ExitCode::too_long: return "stopped early: the remaining tasks need a longer time limit or more memory";
+    case ExitCode::too_long: return "stopped early: its tasks need a longer time limit or more memory";
     case ExitCode::lost: return "all workers were lost";
     default: return fmt::format("exit code {}", run.exit_code);
   }

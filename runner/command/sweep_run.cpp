@@ -137,7 +137,6 @@ void advise(Console& console, const RunOptions& options, const Placement& where,
 /// Counts tries in the file. A non-zero count on an incomplete task means that its worker crashed.
 TaskBody counting_tries(TaskBody body, const Plan& plan, ResultsFile& file) {
   return [body = std::move(body), &plan, &file](std::int64_t index, const StopRequested& stop) {
-    const auto begin = Clock::now();
     const Task task = plan.task(index);
     file.begin(task);
     // A failure within stop() (a sync, a message) is not the task's outcome.
@@ -153,11 +152,7 @@ TaskBody counting_tries(TaskBody body, const Plan& plan, ResultsFile& file) {
     try {
       TaskResult result = body(index, checked_stop);
       if (failure) std::rethrow_exception(failure);
-      if (result.outcome == TaskOutcome::pending) {
-        const Seconds ran = Clock::now() - begin;
-        const auto steps = std::lround(result.share * static_cast<double>(task.steps));
-        file.abandon(task, {ran.count(), static_cast<std::int32_t>(steps)});
-      }
+      if (result.outcome == TaskOutcome::pending) file.abandon(task);
       return result;
     } catch (...) {  // this rank did not crash: the try does not count
       file.abandon(task);
@@ -172,7 +167,8 @@ Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, co
   const auto received = [&] { return signal.received(); };
   MemoryNetwork network(2);
   Timeouts alone;  // no rank to wait for
-  alone.time = timeouts.time;
+  alone.time_limit = timeouts.time_limit;
+  alone.time_left = timeouts.time_left;
   Master master(network[0], std::move(pending), progress, received, alone);
   Worker worker(network[1], std::move(body), received, [&] {
     master.step();
@@ -230,8 +226,8 @@ Timeouts timeouts_of(const RunOptions& options, Clock::time_point begin) {
   timeouts.drain = drain;
   timeouts.max_crashes = options.max_crashes;
   if (options.time_limit_s) {
-    const Seconds whole(*options.time_limit_s);
-    timeouts.time = TimeBudget(whole - (Clock::now() - begin), whole);
+    timeouts.time_limit = Seconds(*options.time_limit_s);
+    timeouts.time_left = timeouts.time_limit - (Clock::now() - begin);
   }
   if (options.worker_timeout_s > 0) timeouts.silence = Seconds(options.worker_timeout_s);
   return timeouts;
@@ -241,26 +237,18 @@ std::string ended_text(const SweepSummary& summary, const RunOptions& options, i
   const Dispatch& dispatch = summary.dispatch;
   RunOptions again = options;
   again.resume = true;
-  if (dispatch.too_long) {
-    again.time_limit_s.reset();
-    return fmt::format(
-        "no remaining task fits into the time limit of {}: task {}, the longest, would take {} {}. To continue, raise "
-        "--time-limit (under Slurm sbatch --time), or stop long tasks with --task-time-limit: {}",
-        duration_text(*options.time_limit_s), dispatch.too_long->index,
-        dispatch.too_long_s > dispatch.too_long->tried_s ? "about" : "more than", duration_text(dispatch.too_long_s),
-        run_line(again, ranks));
-  }
-  if (summary.slow_start_s) {
-    again.time_limit_s.reset();
-    return fmt::format(
-        "planning the tasks and opening the file took {}, the time limit is {}, so at most one task was run. To "
-        "continue, raise --time-limit (under Slurm sbatch --time): {}",
-        duration_text(*summary.slow_start_s), duration_text(*options.time_limit_s), run_line(again, ranks));
-  }
   if (dispatch.signal != 0) return stopped_text(dispatch.signal, again, ranks);
   if (dispatch.left == summary.too_large.tasks)
     return fmt::format("the remaining tasks do not fit into memory (see above). To continue with more memory: {}",
                        run_line(again, ranks));
+  if (exit_code(summary) == ExitCode::too_long) {
+    again.time_limit_s.reset();
+    return fmt::format(
+        "no task ended within the time limit of {}. To continue, raise --time-limit (under Slurm sbatch --time), or "
+        "stop "
+        "long tasks with --task-time-limit: {}",
+        duration_text(*options.time_limit_s), run_line(again, ranks));
+  }
   return fmt::format("{}; finished tasks are kept. To continue: {}",
                      dispatch.late ? "no time is left for the remaining tasks" : "all workers were lost",
                      run_line(again, ranks));
@@ -354,13 +342,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     file.commit_if_due();
     if (mpi.rank() == 0) file.beat(progress.seconds_left(Progress::Clock::now()));
   };
-  const Seconds start = Clock::now() - begin;
-  const auto slow_start_s = options.time_limit_s && start.count() > *options.time_limit_s && to_do > 0
-                                ? std::optional(start.count())
-                                : std::nullopt;
-  Timeouts timeouts = timeouts_of(options, begin);
-  if (options.time_limit_s && continues && mpi.rank() == 0)
-    learn_from_earlier_runs(path, plan, file, pending, timeouts.time);
+  const Timeouts timeouts = timeouts_of(options, begin);
   Dispatch dispatch =
       mpi.size() == 1 ? dispatch_alone(std::move(pending), progress, signal, std::move(body), now_and_then, timeouts)
                       : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body), now_and_then,
@@ -370,7 +352,6 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
 
   SweepSummary summary{total, before.done_by_outcome, dispatch,  where.workers,
                        path,  options.program,        too_large, options.shard};
-  summary.slow_start_s = slow_start_s;
   const auto end = [&](ExitCode code) {
     if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
     dispatch.ranks_lost ? file.leave() : file.close();

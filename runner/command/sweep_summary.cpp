@@ -31,7 +31,7 @@ std::int64_t finished_now(const Dispatch& dispatch) {
 }  // namespace
 
 ExitCode exit_code(const SweepSummary& summary) {
-  if (summary.dispatch.too_long) return ExitCode::too_long;
+  if (summary.dispatch.late && finished_now(summary.dispatch) == 0) return ExitCode::too_long;
   if (const auto left = summary.dispatch.left; left > 0 && left == summary.too_large.tasks) return ExitCode::too_long;
   if (summary.dispatch.left > 0)
     return summary.dispatch.signal != 0 || summary.dispatch.late ? ExitCode::stopped : ExitCode::lost;

@@ -31,8 +31,6 @@ struct SweepSummary {
   TooLarge too_large{};          ///< among the tasks left
   std::optional<Shard> shard{};  ///< of this start
   SolveCounts solves{};          ///< of the whole file
-  /// Seconds to plan the tasks and open the file, if they took the whole time limit.
-  std::optional<double> slow_start_s{};
 };
 
 /// The exit code of the whole file, not only of this start: a resumed sweep with failed tasks returns tasks_failed.

@@ -1,14 +1,12 @@
-// The tasks that a run has to do, and what earlier runs measured about them.
+// The tasks that a run has to do.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <vector>
 
 #include "runner/command/shard.hpp"
 #include "runner/command/sweep_summary.hpp"
 #include "runner/dispatch/pending_task.hpp"
-#include "runner/dispatch/time_budget.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/results_file.hpp"
 
@@ -24,9 +22,5 @@ std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file
 
 /// Removes tasks from `pending` whose results exceed `memory` bytes.
 TooLarge leave_out_too_large(const Plan& plan, std::vector<PendingTask>& pending, double memory);
-
-/// Reads the durations of finished tasks into `time`, and the progress of abandoned tasks into `pending` and `time`.
-void learn_from_earlier_runs(const std::filesystem::path& path, const Plan& plan, const ResultsFile& file,
-                             std::vector<PendingTask>& pending, TimeBudget& time);
 
 }  // namespace rodsweep

@@ -44,7 +44,6 @@ struct Report {
   std::int64_t task = 0;
   TaskOutcome outcome = TaskOutcome::pending;  ///< pending: abandoned, nothing was written
   double busy_s = 0;                           ///< wall time, writing included
-  double share = 1;                            ///< completed share of the task; below 1 if abandoned
   std::array<char, 200> text{};                ///< error message, truncated; ends with a zero
 
   Report() = default;

@@ -29,10 +29,17 @@ Master::Master(Channel& channel, std::vector<PendingTask> tasks, Progress& progr
       now_(now),
       pool_(std::move(tasks)),
       workers_(static_cast<std::size_t>(channel.size())),
+      runs_only_one_(timeouts.time_left.count() <= 0),
       begin_(now()),
       stepped_(begin_) {
   for (Worker& worker : workers_) worker.heard = begin_;
   std::sort(pool_.begin(), pool_.end(), comes_first);
+  if (runs_only_one_ && !pool_.empty()) {
+    const auto cheapest = std::min_element(pool_.begin(), pool_.end(), [](const PendingTask& a, const PendingTask& b) {
+      return std::tuple(a.crashes, a.cost) < std::tuple(b.crashes, b.cost);
+    });
+    std::rotate(pool_.begin(), cheapest, cheapest + 1);
+  }
   for (const PendingTask& task : pool_) pool_cost_ += task.cost;
   dispatch_.left = static_cast<std::int64_t>(pool_.size());
 }
@@ -58,12 +65,11 @@ Master::Step Master::step() {
 
   const TimePoint now = now_();
   progress_->show(now);
-  const bool waits = next_ < pool_.size() && !stopping_ && !nothing_fits_ && any_worker_left();
+  const bool waits = next_ < pool_.size() && !stopping_ && any_worker_left();
   if (in_flight_ > 0 || waits) return traffic ? Step::worked : Step::waited;
 
   progress_->clear();
-  dispatch_.late = dispatch_.left > 0 && (nothing_fits_ || (stopping_ && dispatch_.signal == 0));
-  if (dispatch_.left > 0) find_too_long();
+  dispatch_.late = dispatch_.left > 0 && stopping_ && dispatch_.signal == 0;
   dispatch_.wall_s = std::chrono::duration<double>(now - begin_).count();
   dispatch_.ranks_lost =
       std::any_of(workers_.begin() + 1, workers_.end(), [](const Worker& worker) { return worker.lost; });
@@ -113,14 +119,11 @@ void Master::report(int rank, const Report& report) {
                                 [&](const PendingTask& task) { return task.index == report.task; });
   if (had == sender.tasks.end())
     throw ProtocolError(fmt::format("rank {} reports task {}, which is not assigned to it", rank, report.task));
-  PendingTask task = *had;
+  const PendingTask task = *had;
   sender.tasks.erase(had);
   --in_flight_;
   if (report.outcome == TaskOutcome::pending) {
     dispatch_.busy_s += report.busy_s;
-    timeouts_.time.learn_part(task.cost, report.share, TimeBudget::Seconds(report.busy_s));
-    task.tried_s = std::max(task.tried_s, report.busy_s);
-    abandoned_.push_back(task);
     return;
   }
   count(task, report);
@@ -134,8 +137,6 @@ void Master::remove_saved(Worker& worker) {
 
 void Master::count(const PendingTask& task, const Report& report) {
   dispatch_.busy_s += report.busy_s;
-  timeouts_.time.learn(task.cost, TimeBudget::Seconds(report.busy_s));
-  nothing_fits_ = false;
   --dispatch_.left;
   ++dispatch_.finished.at(static_cast<std::size_t>(report.outcome));
   if (report.outcome != TaskOutcome::ok && dispatch_.failures.size() < failures_kept)
@@ -206,57 +207,20 @@ void Master::stop(int signal) {
 }
 
 void Master::assign_tasks() {
-  for (int rank = 1; rank < channel_->size() && next_fits(); ++rank)
+  for (int rank = 1; rank < channel_->size() && has_next(); ++rank)
     if (is_idle(rank) && !next_runs_alone()) assign(rank);
-  for (int rank = 1; rank < channel_->size() && next_fits(); ++rank)
+  for (int rank = 1; rank < channel_->size() && has_next(); ++rank)
     if (may_hold_another(worker(rank))) assign(rank);
-  for (int rank = 1; rank < channel_->size() && in_flight_ == 0 && next_fits() && next_runs_alone(); ++rank)
+  for (int rank = 1; rank < channel_->size() && in_flight_ == 0 && has_next() && next_runs_alone(); ++rank)
     if (is_idle(rank)) assign(rank);
 }
 
-bool Master::next_fits() {
-  if (next_ >= pool_.size()) return false;
-  if (nothing_fits_) return granted_ && !any_begun_;
-  const TimeBudget::Seconds since_begin = now_() - begin_;
-  const auto first = pool_.begin() + static_cast<std::ptrdiff_t>(next_);
-  const auto fits =
-      std::find_if(first, pool_.end(), [&](const PendingTask& task) { return timeouts_.time.fits(task, since_begin); });
-  nothing_fits_ = fits == pool_.end();
-  if (nothing_fits_) return !any_begun_ && grant_one();
-  std::rotate(first, fits, fits + 1);
-  return true;
-}
-
-/// Makes the cheapest task that a whole limit has time for the next one. False if there is none.
-bool Master::grant_one() {
-  const auto first = pool_.begin() + static_cast<std::ptrdiff_t>(next_);
-  auto granted = pool_.end();
-  for (auto task = first; task != pool_.end(); ++task)
-    if (timeouts_.time.ever_fits(*task) &&
-        (granted == pool_.end() || std::tuple(task->crashes, task->cost) < std::tuple(granted->crashes, granted->cost)))
-      granted = task;
-  if (granted == pool_.end()) return false;
-  std::rotate(first, granted, granted + 1);
-  granted_ = now_();
-  return true;
-}
+bool Master::has_next() const { return next_ < pool_.size() && !(runs_only_one_ && next_ > 0); }
 
 bool Master::is_late() const {
-  if (granted_) return any_begun_ && (in_flight_ == 0 || now_() - *granted_ > timeouts_.time.whole());
-  return any_begun_ && timeouts_.time.is_over(now_() - begin_);
-}
-
-void Master::find_too_long() {
-  const TimeBudget& time = timeouts_.time;
-  std::vector<PendingTask> left(pool_.begin() + static_cast<std::ptrdiff_t>(next_), pool_.end());
-  left.insert(left.end(), abandoned_.begin(), abandoned_.end());
-  if (left.empty() ||
-      std::any_of(left.begin(), left.end(), [&](const PendingTask& task) { return time.ever_fits(task); }))
-    return;
-  dispatch_.too_long = *std::max_element(left.begin(), left.end(), [&](const PendingTask& a, const PendingTask& b) {
-    return time.expected(a) < time.expected(b);
-  });
-  dispatch_.too_long_s = time.expected(*dispatch_.too_long).count();
+  if (next_ == 0) return false;  // nothing was tried
+  const Timeouts::Seconds ran = now_() - begin_;
+  return runs_only_one_ ? in_flight_ == 0 || ran > timeouts_.time_limit : ran > timeouts_.time_left;
 }
 
 bool Master::is_idle(int rank) const {
@@ -275,8 +239,6 @@ bool Master::next_runs_alone() const {
 bool Master::may_hold_another(const Worker& worker) const {
   constexpr double margin = 2;  // costs are estimates
   if (worker.tasks.size() != 1 || pool_[next_].crashes > 0) return false;
-  const TimeBudget::Seconds begins = now_() - begin_ + timeouts_.time.expected(worker.tasks.front());
-  if (!timeouts_.time.fits(pool_[next_], begins)) return false;
   const double second = pool_[next_].cost;
   const auto workers = static_cast<double>(channel_->size() - 1);
   return margin * workers * (worker.tasks.front().cost + second) <= pool_cost_ - second;
@@ -287,7 +249,6 @@ void Master::assign(int rank) {
   pool_cost_ -= task.cost;
   worker(rank).tasks.push_back(task);
   ++in_flight_;
-  any_begun_ = true;
   channel_->send(rank, Assign{task.index});
 }
 

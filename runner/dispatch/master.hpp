@@ -12,10 +12,9 @@
 // others. If all workers are lost, the sweep ends.
 //
 // After a signal to any rank, no more tasks are assigned and running ones are abandoned. Workers that do not report
-// this within the drain timeout are lost.
-// With a time limit, tasks that would probably exceed it are not started (time_budget.hpp), and running tasks are
-// abandoned when it expires. If planning and opening the file leave no time for any task, one task runs all the same,
-// for at most the time limit, so that every run gets on.
+// this within the drain timeout are lost. The same happens at the time limit of the run. If planning and opening the
+// file took all of that time, the cheapest task runs all the same, for at most the time limit, so that every run tries
+// one.
 // Each Assign is answered by one Report per task; workers are dismissed (Finish) after the last Report.
 #pragma once
 
@@ -25,23 +24,25 @@
 #include <deque>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "runner/dispatch/channel.hpp"
 #include "runner/dispatch/pending_task.hpp"
-#include "runner/dispatch/time_budget.hpp"
 #include "runner/terminal/progress.hpp"
 #include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
 
 struct Timeouts {
-  std::chrono::duration<double> silence{std::numeric_limits<double>::infinity()};  ///< without a worker's heartbeat
-  std::chrono::duration<double> drain{std::numeric_limits<double>::infinity()};    ///< after a request to stop
-  TimeBudget time{};                                                               ///< of the whole run
-  int max_crashes = 3;  ///< a task is not retried after this many worker deaths
+  using Seconds = std::chrono::duration<double>;
+  static constexpr Seconds never{std::numeric_limits<double>::infinity()};
+
+  Seconds silence = never;     ///< without a worker's heartbeat
+  Seconds drain = never;       ///< after a request to stop
+  Seconds time_limit = never;  ///< of the whole run
+  Seconds time_left = never;   ///< of the time limit
+  int max_crashes = 3;         ///< a task is not retried after this many worker deaths
 };
 
 /// Called by the master while it runs; empty functions are skipped.
@@ -67,8 +68,6 @@ struct Dispatch {
   std::int64_t left = 0;                               ///< not run or abandoned; 0 unless stopped early
   int signal = 0;                                      ///< the signal that stopped the sweep
   bool late = false;                                   ///< stopped by the time limit
-  std::optional<PendingTask> too_long;                 ///< the longest task left, if none would ever fit
-  double too_long_s = 0;                               ///< its expected time
   bool ranks_lost = false;                             ///< no collective call may follow
   double busy_s = 0;                                   ///< of all workers
   double wall_s = 0;
@@ -124,10 +123,8 @@ class Master {
   bool is_idle(int rank) const;
   bool any_worker_left() const;
   bool may_hold_another(const Worker& worker) const;
-  bool next_fits();
-  bool grant_one();
+  bool has_next() const;
   bool is_late() const;
-  void find_too_long();
   bool next_runs_alone() const;
 
   Channel* channel_;
@@ -141,9 +138,8 @@ class Master {
   double pool_cost_ = 0;
   std::vector<Worker> workers_;  ///< by rank; the master's entry is unused
   std::int64_t in_flight_ = 0;
-  bool stopping_ = false, nothing_fits_ = false, any_begun_ = false;
-  std::optional<TimePoint> granted_;  ///< when one task was granted although the time is over
-  std::vector<PendingTask> abandoned_;
+  bool stopping_ = false;
+  bool runs_only_one_;  ///< no time was left at the start
   TimePoint begin_, stepped_, stopped_;
   Dispatch dispatch_;
 };

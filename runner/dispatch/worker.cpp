@@ -90,9 +90,7 @@ void Worker::run(std::int64_t task) {
   looked_ = begin;
   const TaskResult result = body_(task, [this] { return stop_requested(); });
   const std::chrono::duration<double> busy = now_() - begin;
-  Report report(task, result.outcome, busy.count(), result.message);
-  if (result.outcome == TaskOutcome::pending) report.share = result.share;
-  channel_->send(master, report);
+  channel_->send(master, Report(task, result.outcome, busy.count(), result.message));
 }
 
 bool Worker::stop_requested() {

@@ -21,7 +21,6 @@ namespace rodsweep {
 struct TaskResult {
   TaskOutcome outcome = TaskOutcome::pending;  ///< pending: abandoned on request
   std::string message;
-  double share = 0;  ///< completed share of its steps, if abandoned
 };
 
 /// Runs one task.

@@ -77,8 +77,7 @@ TaskBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
       throw std::runtime_error(fmt::format("the results of task {} do not fit: {}", index,
                                            out_of_memory_text() + ", or record less (\"record\" in the job)"));
     }
-    if (!evaluate_caught(task, plan.spec(index), sizes, evaluate, stop, record))
-      return {TaskOutcome::pending, "", record.tasks.steps_done[0] / static_cast<double>(task.steps)};
+    if (!evaluate_caught(task, plan.spec(index), sizes, evaluate, stop, record)) return {};
     if (!unless_stopped(stop, [&] { write(task, record, nullptr); })) return {};
     return {record.outcome, record.message};
   };

@@ -76,19 +76,4 @@ struct Verification {
 /// Reads all data of finished tasks (outside /timing) and compares it with /tasks/checksum.
 Verification verify(const std::filesystem::path& path);
 
-/// The longest abandoned try of a task.
-struct Try {
-  double elapsed_s = 0;  ///< 0: none
-  std::int32_t steps = 0;
-};
-
-/// By task.
-struct TaskTimes {
-  std::vector<double> elapsed_s;  ///< of finished tasks
-  std::vector<Try> tried;
-};
-
-/// Throws FileError.
-TaskTimes read_task_times(const std::filesystem::path& path);
-
 }  // namespace rodsweep

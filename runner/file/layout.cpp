@@ -91,10 +91,6 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
   fields.push_back(
       number_field<std::uint8_t>("/timing/tasks/tries", {plan.size()}, "1",
                                  "tries without a result: the worker crashed, hung or still runs the task"));
-  fields.push_back(number_field<double>("/timing/tasks/tried_s", {plan.size()}, "s",
-                                        "longest time that a run spent on the task before abandoning it; 0: never"));
-  fields.push_back(
-      number_field<std::int32_t>("/timing/tasks/tried_steps", {plan.size()}, "1", "time steps completed in that time"));
   check_sizes(fields, plan);
   fields.erase(std::remove_if(fields.begin(), fields.end(), [](const Field& field) { return data_bytes(field) == 0; }),
                fields.end());

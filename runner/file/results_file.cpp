@@ -223,7 +223,7 @@ struct ResultsFile::Open {
   AxisSizes sizes;
   RunRow run;                             // of this run
   std::vector<hdf5::RowDataset> columns;  // in the order of columns(); empty: not in the file
-  hdf5::RowDataset state, outcome, message, checksum, tries, rank, host, run_row, write_s, tried_s, tried_steps;
+  hdf5::RowDataset state, outcome, message, checksum, tries, rank, host, run_row, write_s;
   hdf5::Datatype outcome_type = hdf5::text_type(outcome_bytes), message_type = hdf5::text_type(message_bytes);
   hdf5::Datatype host_type = hdf5::text_type(host_bytes);
   std::string own_host = host_name();
@@ -313,8 +313,6 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     open_->host = open_rows("/timing/tasks/host");
     open_->run_row = open_rows("/timing/tasks/run");
     open_->write_s = open_rows("/timing/tasks/write_s");
-    open_->tried_s = open_rows("/timing/tasks/tried_s");
-    open_->tried_steps = open_rows("/timing/tasks/tried_steps");
     for (const Column& column : columns()) open_->columns.push_back(open_rows(column.path));
   });
   if (open_->own_rank == 0 && !open_->lock.held())
@@ -367,14 +365,7 @@ void ResultsFile::begin(const Task& task) {
   open_->set_tries(task.index, before < UINT8_MAX ? before + 1 : before);
 }
 
-void ResultsFile::abandon(const Task& task, const Try& tried) {
-  const auto row = static_cast<hsize_t>(task.index);
-  double longest = 0;
-  open_->tried_s.read(hdf5::type_of<double>(), row, 1, &longest);
-  if (!(longest >= tried.elapsed_s) && tried.elapsed_s > 0) {
-    open_->tried_s.write(hdf5::type_of<double>(), row, 1, &tried.elapsed_s);
-    open_->tried_steps.write(hdf5::type_of<std::int32_t>(), row, 1, &tried.steps);
-  }
+void ResultsFile::abandon(const Task& task) {
   open_->set_tries(task.index, before_.at(task.index));
   before_.erase(task.index);
 }

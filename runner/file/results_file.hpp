@@ -25,7 +25,6 @@
 #include "runner/file/file_creation.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/file/file_lock.hpp"
-#include "runner/file/inspect.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
 #include "runner/plan/plan.hpp"
@@ -71,9 +70,9 @@ class ResultsFile {
 
   /// Independent; call before a rank runs a task. Counts the try and stores the rank.
   void begin(const Task& task);
-  /// Independent: uncounts a try that was abandoned on request, and stores its progress if it is the longest so far.
-  /// Does not touch results, because another rank may run or have finished the task.
-  void abandon(const Task& task, const Try& tried = {});
+  /// Independent: uncounts a try that was abandoned on request. Does not touch results, because another rank may run or
+  /// have finished the task.
+  void abandon(const Task& task);
 
   /// Independent: any rank, any task not done(), once. The task is complete after the next commit(); calls it if due.
   /// `origin`: who ran the task, if not this run. Within an Interruptible, an interruption ends the writing of a long

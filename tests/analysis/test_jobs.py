@@ -210,9 +210,9 @@ class Messages(WithJobs):
                          "input files of the job have changed: .*/g.py, .*/w.txt")
 
     def test_a_run_that_stops_early_says_why(self):
-        words = r"^no remaining task fits into the time limit of .*\. \(exit code 5\)$"
+        words = r"^no task ended within the time limit of .*\. \(exit code 5\)$"
         with self.assertRaisesRegex(rodsweep.JobError, words) as caught:
-            tiny().run(time_limit=1e-9)
+            tiny(time={"step_s": 0.02, "steps": 10000}).run(time_limit=1e-9)
         self.assertEqual(caught.exception.code, 5)
 
     def test_a_missing_program_is_named(self):

@@ -1,4 +1,4 @@
-// Signals: running tasks are cancelled, held tasks come back, none is assigned, all workers leave.
+// Signals and the time limit: running tasks are cancelled, held tasks come back, none is assigned, all workers leave.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -102,6 +102,56 @@ TEST_CASE("a lone rank keeps its master alive while a task runs") {
       [] { return 0; }, [&] { sweep.master.step(); });
   while (sweep.master.step() != Master::Step::finished) worker.step();
   CHECK(sweep.master.dispatch().left == 2);
+}
+
+TEST_CASE("at the time limit no task begins any more, and running ones are abandoned") {
+  Timeouts limited;
+  limited.time_limit = limited.time_left = Timeouts::Seconds(10);
+  Sweep sweep(1, tasks_of_cost({3, 2, 1}), limited);
+  Inbox worker(sweep.network[1]);
+  sweep.master.step();
+  REQUIRE(worker.assigned() == std::vector<std::int64_t>{0});
+  test::HandClock::pass(Timeouts::Seconds(9));
+  worker.report(0);
+  sweep.master.step();
+  REQUIRE(worker.assigned() == std::vector<std::int64_t>{1});
+  test::HandClock::pass(Timeouts::Seconds(2));
+  sweep.master.step();
+  CHECK(worker.assigned().empty());
+  CHECK(worker.stops == 1);
+  worker.report(1, TaskOutcome::pending);
+  CHECK(sweep.master.step() == Master::Step::finished);
+  CHECK(sweep.master.dispatch().late);
+  CHECK(sweep.master.dispatch().left == 2);
+}
+
+TEST_CASE("a run whose start took the time limit tries the cheapest task, for at most the limit") {
+  Timeouts limited;
+  limited.time_limit = Timeouts::Seconds(10);
+  limited.time_left = Timeouts::Seconds(-2);
+  std::vector<PendingTask> tasks = tasks_of_cost({40, 2, 3, 1});
+  tasks[3].crashes = 1;
+  const bool ends = GENERATE(true, false);
+  Sweep sweep(2, tasks, limited);
+  Inbox one(sweep.network[1]), other(sweep.network[2]);
+  sweep.master.step();
+  REQUIRE(one.assigned() == std::vector<std::int64_t>{1});
+  test::HandClock::pass(Timeouts::Seconds(9));
+  sweep.master.step();
+  one.assigned();
+  CHECK(one.stops == 0);
+  if (!ends) {
+    test::HandClock::pass(Timeouts::Seconds(2));
+    sweep.master.step();
+    one.assigned();
+    CHECK(one.stops == 1);
+  }
+  one.report(1, ends ? TaskOutcome::ok : TaskOutcome::pending);
+  CHECK(sweep.master.step() == Master::Step::finished);
+  CHECK(one.assigned().empty());
+  CHECK(other.assigned().empty());
+  CHECK(sweep.master.dispatch().late);
+  CHECK(sweep.master.dispatch().left == (ends ? 3 : 4));
 }
 
 TEST_CASE("a stop signal is noted, a second one changes nothing, and the old handler returns") {

@@ -52,7 +52,7 @@ TEST_CASE("progress counts earlier runs, but judges the rate by this one") {
   CHECK(progress.text(start + seconds(10)) == "120 of 400 tasks (30 %), 2 failed, 2/s, 2 min 20 s left");
 }
 
-TEST_CASE("a finished sweep exits 0, with failures 3, stopped 4, with tasks that are too long 5, without workers 6") {
+TEST_CASE("a finished sweep exits 0, with failures 3, stopped 4, without an ended task in time 5, without workers 6") {
   CHECK(exit_code({5, {}, dispatch_of(5, 0, 0), 1, "x.h5"}) == ExitCode::ok);
   CHECK(exit_code({5, {}, dispatch_of(4, 1, 0), 1, "x.h5"}) == ExitCode::tasks_failed);
   Dispatch ended = dispatch_of(3, 1, 1);
@@ -63,8 +63,9 @@ TEST_CASE("a finished sweep exits 0, with failures 3, stopped 4, with tasks that
   ended.late = true;
   CHECK(exit_code({5, {}, ended, 1, "x.h5"}) == ExitCode::stopped);
   CHECK(exit_code({5, {}, ended, 1, "x.h5", "rodsweep", TooLarge{1, 0, 1}}) == ExitCode::too_long);
-  ended.too_long = PendingTask{};
-  CHECK(exit_code({5, {}, ended, 1, "x.h5"}) == ExitCode::too_long);
+  ended = dispatch_of(0, 0, 1);
+  ended.late = true;
+  CHECK(exit_code({5, {{"ok", 4}}, ended, 1, "x.h5"}) == ExitCode::too_long);
   CHECK(exit_code({5, {{"ok", 1}, {"error", 1}}, dispatch_of(3, 0, 0), 1, "x.h5"}) == ExitCode::tasks_failed);
 }
 
