@@ -106,10 +106,6 @@ def text(found, pairs, keys, options):
              found.times()]
     if times:
         lines += [f"times, medians{times_remark(found)}", *table([["time", "A", "B", "median of B / A", "tasks"], *times])]
-    apart = found.timed_apart()
-    if apart:
-        lines.append(f"no time of the whole task: {apart} task{'s' * (apart != 1)}, where a later run (run --extend) timed "
-                     "only the new guesses")
     if options.tasks and found.differing:
         lines.append("tasks that differ")
         for place, paths in found.differing.items():

@@ -142,7 +142,7 @@ def speedup_lines(file, sims, found, guesses, newton):
     lines = ["", f"Time per solve and speedup over zero-guess CG, {measures.NEWTON[newton]}; whole step: all.",
              f"Solved to tolerance {remarks.solve_tolerance(file, sims.tasks())}; median over simulations [95 % interval]"]
     lines += _warning(file, sims)
-    lines += filter(None, (remarks.timing_note(file, sims.tasks()), remarks.oracle_note(file, guesses).strip()))
+    lines += filter(None, [remarks.oracle_note(file, guesses).strip()])
     names = list(timings.SPEEDUPS)
     for block in shown:
         title, first = _titled(block, block.times["cg_us"].count[guesses])

@@ -55,9 +55,8 @@ inline constexpr const char* run_help =
     "                                                      the same, with an hour for each task\n"
     "  rodsweep run job.json -n 2 --memory-limit-gb 20\n"
     "                                                      instead of an equal share for each worker\n"
-    "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples, more grid values\n"
-    "                                                      or more guesses. Copies the results of out.h5, runs new\n"
-    "                                                      guesses on its trajectories, and runs the other tasks.\n"
+    "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples or more grid values.\n"
+    "                                                      Copies the results of out.h5 and runs the other tasks.\n"
     "                                                      out.h5 stays unchanged; more.h5 equals a full new run.";
 
 /// Starts PETSc. All ranks return the same result. Throws CollectiveError on all ranks if the run cannot start (a job

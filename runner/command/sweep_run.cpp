@@ -54,10 +54,8 @@ std::optional<Extension> open_extension(const RunOptions& options, const fs::pat
 }
 
 std::string extension_text(const Extension& extension, std::int64_t total) {
-  using Use = Extension::Use;
-  return fmt::format("{}: {} are copied from {}, {} run only new guesses, {} run in full", counted(total, "task"),
-                     extension.count(Use::copy), extension.path().native(), extension.count(Use::complete),
-                     extension.count(Use::run));
+  return fmt::format("{}: {} are copied from {}, {} are run", counted(total, "task"), extension.copied(),
+                     extension.path().native(), total - extension.copied());
 }
 
 /// Throws FileError if the last run of the file ran another shard.

@@ -114,9 +114,8 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
       forcing_(static_cast<int>(scene.rods.size()), spec.solve.tolerance, spec.time.newton_tolerance),
       solvers_(scene.rods.size()) {
   if (spec.solve.is_direct()) direct_.emplace(scene);
-  const bool one = spec.own_guess >= 0;
   for (std::size_t g = 0; g < spec.guesses.size(); ++g)
-    if (one ? static_cast<int>(g) == spec.own_guess : spec.settled.empty() || spec.settled[g] == 0)
+    if (spec.own_guess < 0 || static_cast<int>(g) == spec.own_guess)
       guesses_.push_back({g, is_zero(spec.guesses[g]), is_of_the_user(spec.guesses[g]),
                           TimedGuess(make_guess(spec.guesses[g], spec, scene))});
   for (const Guess& guess : guesses_) {
@@ -328,16 +327,8 @@ SolveEffort MeasuredSolve::take_effort() { return std::exchange(effort_, {}); }
 
 double MeasuredSolve::take_elapsed_s() { return std::exchange(elapsed_s_, 0); }
 
-void MeasuredSolve::finish() {
-  set_cg_ratios(spec_, record_);
-  if (!unusable_.empty()) record_.message += ": it cannot start from the guess \"" + unusable_ + "\"";
-  if (unsteady_.empty()) return;
-  if (!record_.message.empty()) record_.message += "; ";
-  record_.message += "the guess \"" + unsteady_ +
-                     "\" gave two different answers for the same system: its counts and times are not of one guess";
-}
-
-void set_cg_ratios(const TaskSpec& spec, TaskRecord& record) {
+/// Sets cg_ratio from the sums, for all guesses that were tried.
+static void set_cg_ratios(const TaskSpec& spec, TaskRecord& record) {
   const auto zero =
       static_cast<std::size_t>(std::find_if(spec.guesses.begin(), spec.guesses.end(), is_zero) - spec.guesses.begin());
   if (zero == spec.guesses.size()) return;
@@ -349,6 +340,15 @@ void set_cg_ratios(const TaskSpec& spec, TaskRecord& record) {
         if (own >= 0 && of_zero > 0)  // negative: not tried in this task
           sums->cg_ratio(0, g, t) = static_cast<double>(own) / static_cast<double>(of_zero);
       }
+}
+
+void MeasuredSolve::finish() {
+  set_cg_ratios(spec_, record_);
+  if (!unusable_.empty()) record_.message += ": it cannot start from the guess \"" + unusable_ + "\"";
+  if (unsteady_.empty()) return;
+  if (!record_.message.empty()) record_.message += "; ";
+  record_.message += "the guess \"" + unsteady_ +
+                     "\" gave two different answers for the same system: its counts and times are not of one guess";
 }
 
 }  // namespace rodsweep

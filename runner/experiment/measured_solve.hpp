@@ -25,9 +25,6 @@
 
 namespace rodsweep {
 
-/// Sets cg_ratio from the sums, for all guesses that were tried.
-void set_cg_ratios(const TaskSpec& spec, TaskRecord& record);
-
 /// Of the solves that advanced the rods: assembly, guesses and solves [s], and CG's share.
 struct SolveEffort {
   double seconds = 0;

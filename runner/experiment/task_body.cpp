@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "runner/experiment/host_memory.hpp"
-#include "runner/experiment/measured_solve.hpp"
 #include "runner/file/extension.hpp"
 #include "solver/linear/interruption.hpp"
 
@@ -44,27 +43,6 @@ bool evaluate_caught(const Task& task, const TaskSpec& spec, const AxisSizes& si
   return true;
 }
 
-/// Evaluates the guesses missing in the earlier file, and merges the others into the record. False if abandoned.
-bool complete_task(const Plan& plan, const Extension& extension, const Evaluate& evaluate, const StopRequested& stop,
-                   const Task& task, const TaskRecord& taken, TaskRecord& record) {
-  TaskSpec spec = plan.spec(task.index);
-  for (const std::int8_t copied : taken.timing.copied_guess) spec.settled.push_back(copied == 1);
-  if (!evaluate(task, spec, record, stop)) return false;
-  // These outcomes do not mean that the trajectory differs.
-  if (record.outcome == TaskOutcome::timed_out || record.outcome == TaskOutcome::error) return true;
-  const std::string difference = complete(task, record, taken);
-  if (!difference.empty()) {
-    const std::string earlier = extension.path().native();
-    throw FileError(
-        fmt::format("task {}, repeated for its new guesses, differs from {}, task {}: {}. That file is from another "
-                    "machine or revision, and its results cannot be combined with new ones; use --resume without "
-                    "--extend to run the remaining tasks in full",
-                    task.index, earlier, extension.source(task.index), difference));
-  }
-  set_cg_ratios(spec, record);
-  return true;
-}
-
 }  // namespace
 
 TaskBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
@@ -84,27 +62,19 @@ TaskBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
 }
 
 TaskBody extending_body(const Plan& plan, const Extension& extension, WriteRecord write,
-                        std::function<void(const std::string&)> warn, Evaluate evaluate) {
-  return [&plan, &extension, write, warn = std::move(warn), evaluate, run = task_body(plan, write, evaluate),
-          sizes = axis_sizes(plan), taken = TaskRecord(),
+                        std::function<void(const std::string&)> warn) {
+  return [&plan, &extension, write, warn = std::move(warn), run = task_body(plan, write), sizes = axis_sizes(plan),
           record = TaskRecord()](std::int64_t index, const StopRequested& stop) mutable -> TaskResult {
+    if (extension.source(index) < 0) return run(index, stop);
     const Task task = plan.task(index);
-    const Extension::Use use = extension.use(index);
-    if (use == Extension::Use::run) return run(index, stop);
-    taken.prepare(task, sizes);
-    if (!extension.take(index, taken)) {
+    record.prepare(task, sizes);
+    if (!extension.take(index, record)) {
       warn(fmt::format("task {} of {} is damaged (wrong checksum); it is run again as task {}", extension.source(index),
                        extension.path().native(), index));
       return run(index, stop);
     }
-    if (use == Extension::Use::copy) {
-      const TaskOrigin origin = extension.origin(index);
-      if (!unless_stopped(stop, [&] { write(task, taken, &origin); })) return {};
-      return {taken.outcome, taken.message};
-    }
-    record.prepare(task, sizes);
-    if (!complete_task(plan, extension, evaluate, stop, task, taken, record)) return {};
-    if (!unless_stopped(stop, [&] { write(task, record, nullptr); })) return {};
+    const TaskOrigin origin = extension.origin(index);
+    if (!unless_stopped(stop, [&] { write(task, record, &origin); })) return {};
     return {record.outcome, record.message};
   };
 }

@@ -1,7 +1,7 @@
 // Evaluates a task and writes its record. In a sweep that extends an earlier file (runner/file/extension.hpp), a task
-// is copied, completed or run.
+// is copied or run.
 // A failed evaluation is an outcome, which is written like any other. Throws only if a record can't be allocated or
-// written, or does not match the earlier file.
+// written.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,8 @@ using WriteRecord = std::function<void(const Task&, const TaskRecord&, const Tas
 /// The plan must outlive the body.
 TaskBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate = rodsweep::evaluate);
 
-/// If a source task is damaged, calls `warn` and runs the task. Throws FileError with the task if a repeated trajectory
-/// is not bitwise equal to the stored one. Plan and extension must outlive the body.
+/// If a source task is damaged, calls `warn` and runs the task. Plan and extension must outlive the body.
 TaskBody extending_body(const Plan& plan, const Extension& extension, WriteRecord write,
-                        std::function<void(const std::string&)> warn, Evaluate evaluate = rodsweep::evaluate);
+                        std::function<void(const std::string&)> warn);
 
 }  // namespace rodsweep

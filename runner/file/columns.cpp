@@ -1,7 +1,5 @@
 #include "runner/file/columns.hpp"
 
-#include <fmt/format.h>
-
 #include <functional>
 #include <numeric>
 #include <type_traits>
@@ -224,12 +222,8 @@ std::vector<Column> all_columns() {
                                            "time of the step"),
       column<&R::timing, &Timing::rest_s>("/timing/steps/rest_s", Rows::step, none, "s",
                                           "the step without assembly, guesses and solves"),
-      column<&R::timing, &Timing::source_task>(
-          "/timing/tasks/source_task", Rows::task, none, "1",
-          "task of the extended file whose rows, or rows of some guesses, were copied; -1: none"),
-      column<&R::timing, &Timing::copied_guess>(
-          "/timing/tasks/copied_guess", Rows::task, guess, "1",
-          "1: the guess's rows and times were copied from source_task; -1: they were not"),
+      column<&R::timing, &Timing::source_task>("/timing/tasks/source_task", Rows::task, none, "1",
+                                               "task of the extended file whose rows were copied; -1: none"),
       // Not times, but of the timed solves: a column in /tasks would change the checksums of all tasks.
       column<&R::timing, &Timing::solves_timed>("/timing/tasks/solves_timed", Rows::task, guess, "1",
                                                 "timed solves of the guess; -1: it was not tried"),
@@ -271,8 +265,6 @@ std::int64_t row_width(const Column& column, const AxisSizes& sizes) {
   return std::accumulate(extent.begin(), extent.end(), std::int64_t{1}, std::multiplies<>());
 }
 
-bool has_guesses(const Column& column) { return !column.axes.empty() && column.axes.front() == Axis::guess; }
-
 bool is_timing(const Column& column) { return std::string_view(column.path).substr(0, 8) == "/timing/"; }
 
 char* data_of(const Column& column, TaskRecord& record) {
@@ -286,11 +278,6 @@ std::string_view bytes_of(const Column& column, const TaskRecord& record) {
                                 values->size() * sizeof(values->front()));
       },
       column.values(const_cast<TaskRecord&>(record)));  // only pointed into
-}
-
-std::string text_of(const Column& column, const TaskRecord& record, std::size_t index) {
-  return std::visit([&](const auto* values) { return fmt::format("{}", values->at(index)); },
-                    column.values(const_cast<TaskRecord&>(record)));
 }
 
 }  // namespace rodsweep

@@ -39,17 +39,11 @@ std::vector<std::int64_t> row_extent(const Column& column, const AxisSizes& size
 /// Values in one row.
 std::int64_t row_width(const Column& column, const AxisSizes& sizes);
 
-/// Whether the first axis after the row is the guess axis.
-bool has_guesses(const Column& column);
-
 /// Whether it may differ between runs of the same job, and so is not in the checksum.
 bool is_timing(const Column& column);
 
 /// The raw bytes of a column's values in a record.
 std::string_view bytes_of(const Column& column, const TaskRecord& record);
 char* data_of(const Column& column, TaskRecord& record);
-
-/// The value at `index` as text.
-std::string text_of(const Column& column, const TaskRecord& record, std::size_t index);
 
 }  // namespace rodsweep

@@ -127,8 +127,7 @@ struct TaskRecord {
     Cells<float> solve_s, rest_s;       ///< [step] assembly, guesses and solves that advanced the rods; all else
     Cells<double> elapsed_s;            ///< [1]
     Cells<std::int32_t> solves_timed, solves_missed;  ///< [1, guess]
-    Cells<std::int64_t> source_task;                  ///< [1] \ of an extended sweep
-    Cells<std::int8_t> copied_guess;                  ///< [1, guess] /
+    Cells<std::int64_t> source_task;                  ///< [1] of an extended sweep
   } timing;
 
   /// Sizes all columns for this task and fills them with sentinels. Reuses the memory of an earlier task. Can

@@ -119,9 +119,8 @@ struct TaskSpec {
   TimeSpec time;
   SolveSpec solve;
   Evaluation evaluation = Evaluation::paired;
-  std::vector<GuessSpec> guesses;     ///< the file's whole guess axis, in order; empty for a direct simulation
-  std::vector<std::uint8_t> settled;  ///< 1: results of this guess are known; it is not tried; empty: all are tried
-  int own_guess = -1;                 ///< closed loop with cg: index into `guesses` of this task's guess; else -1
+  std::vector<GuessSpec> guesses;  ///< the file's whole guess axis, in order; empty for a direct simulation
+  int own_guess = -1;              ///< closed loop with cg: index into `guesses` of this task's guess; else -1
   OutputSpec output;
   std::uint64_t seed =
       0;  ///< for guesses that draw random numbers; from the job's seed and the sample, shared by grid points

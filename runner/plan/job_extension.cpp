@@ -85,7 +85,8 @@ void check_extends(const Job& job, const Job& before) {
   const auto refuse = [&](const std::string& path, const std::string& what) {
     throw job_error(job.path, path,
                     fmt::format("{}. --extend allows these changes to the job of {} (rodsweep info {} --job): more "
-                                "samples, grid values or guesses, or another time limit; run this job without --extend",
+                                "samples or grid values, or another time limit; to compare other guesses, run this job "
+                                "without --extend, so that one run times them all",
                                 what, file, file));
   };
   if (job.samples < before.samples) {
@@ -93,17 +94,7 @@ void check_extends(const Job& job, const Job& before) {
   }
   Json now = job.values, then = before.values;
   rename(then, before.files, job.files);
-  const Json guesses = job.guesses();
-  for (Json guess : before.guesses()) {
-    rename(guess, before.files, job.files);
-    if (any_extends(guesses, guess)) continue;
-    for (std::size_t i = 0; i < guesses.size(); ++i)
-      if (guess_label(guesses[i]) == guess_label(guess))
-        if (const auto found = difference(guesses[i], guess, element("guesses", i)))
-          refuse(found->path, fmt::format("{} here, {} in {}", shown(found->now), shown(found->before), file));
-    refuse("guesses", fmt::format("\"{}\" of {} is missing", guess_label(guess), file));
-  }
-  for (const char* free : {"$schema", "name", "description", "samples", "guesses", "task_time_limit_s"})
+  for (const char* free : {"$schema", "name", "description", "samples", "task_time_limit_s"})
     now.erase(free), then.erase(free);
   if (const auto found = difference(now, then, "")) {
     refuse(found->path, fmt::format("{} here, {} in {}", shown(found->now), shown(found->before), file));

@@ -1,6 +1,7 @@
-// Checks whether a job extends an earlier one: more samples, more values in a grid or zip (a single value may become a
-// grid that contains it) or more guesses, in any order. Name, description and the paths of files with equal content
-// may change. Everything else must be equal, above all the seed.
+// Checks whether a job extends an earlier one: more samples, or more values in a grid or zip, in any order (a single
+// value may become a grid that contains it). Name, description, labels of guesses and the paths of files with equal
+// content may change. Everything else must be equal, above all the seed and the guesses: times of guesses are compared
+// within one run.
 #pragma once
 
 #include "runner/job/job.hpp"

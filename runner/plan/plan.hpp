@@ -33,9 +33,14 @@ struct ParameterColumn {
 
 /// All inputs of a task's results, as bytes that are equal in all plans with this task.
 struct TaskIdentity {
-  std::string trajectory;            ///< in a closed loop including the guess that advances it
-  std::vector<std::string> guesses;  ///< by index on the guess axis: name and parameters without label; empty if none
-  std::string record;                ///< settings of what is recorded
+  std::string trajectory;  ///< in a closed loop including the guess that advances it
+  std::vector<std::string>
+      guesses;         ///< tried on it, in order: name and parameters without label; empty in a closed loop
+  std::string record;  ///< settings of what is recorded
+
+  bool operator==(const TaskIdentity& other) const {
+    return trajectory == other.trajectory && guesses == other.guesses && record == other.record;
+  }
 };
 
 class Plan {

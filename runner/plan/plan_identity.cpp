@@ -50,9 +50,11 @@ TaskIdentity Plan::identity(std::int64_t index) const {
       append(identity.guesses.at(guess), std::string_view(path).substr(end + 1), value, described, job_);
     }
   }
-  const auto own = static_cast<std::size_t>(task.own_guess);
-  identity.trajectory +=
-      fmt::format("seed {} sample {}\n{}", job_.seed, task.sample, task.own_guess < 0 ? "" : identity.guesses[own]);
+  identity.trajectory += fmt::format("seed {} sample {}\n", job_.seed, task.sample);
+  if (task.own_guess >= 0) {
+    identity.trajectory += identity.guesses.at(static_cast<std::size_t>(task.own_guess));
+    identity.guesses.clear();
+  }
   identity.record = job_.values["record"].dump();
   return identity;
 }

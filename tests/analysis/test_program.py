@@ -192,14 +192,6 @@ class Program(unittest.TestCase):
         self.assertEqual(len(self.script("spatial.py", short.path).split()), 2)
         self.assertIn("No times", self.script("summary.py", short.path))
 
-    def test_times_of_an_extended_sweep_say_that_they_are_of_two_runs(self):
-        old = self.run_job("base", scene=ROD, guesses=["zero", "previous"])
-        for name, guesses, apart in (("more", ["zero", "previous", "linear"], True),
-                                     ("turned", ["previous", "zero"], False)):
-            said = self.script("summary.py", self.run_job(name, "--extend", old, scene=ROD, guesses=guesses))
-            self.assertEqual("guesses were timed in another run" in said, apart)
-            self.assertNotIn("WARNING", said)
-
     def test_the_curve_along_the_time_is_that_of_the_rows(self):
         path = self.run_job("paired")
         with SweepFile(path) as file:

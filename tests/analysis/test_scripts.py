@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import os
-import shutil
 import subprocess
 import unittest
 
@@ -74,25 +73,6 @@ class Spatial(Scripts):
         command = [os.path.join(synthetic.ANALYSIS, "spatial.py"), "--help"]
         said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=self.folder).stdout
         self.assertIn("analysis/spatial.py results/demo.h5", said)
-
-
-class Compare(Scripts):
-    def test_a_task_that_ran_only_a_new_guess_has_no_time_of_the_whole_task(self):
-        self.write(scenes=("helix",), samples=1)
-        for path, elapsed in (("sweep.h5", [1.0, 1, 1]), ("extended.h5", [0.2, 1.5, 1.5])):
-            if path != "sweep.h5":
-                shutil.copy("sweep.h5", path)
-            with h5py.File(path, "a") as h5:
-                copied = np.full((3, 4), -1, dtype=np.int8)
-                copied[0, :3] = 1 if path == "extended.h5" else -1
-                for name, values in (("elapsed_s", elapsed), ("copied_guess", copied)):
-                    h5.pop(f"timing/tasks/{name}", None)
-                    h5[f"timing/tasks/{name}"] = np.array(values)
-        lines = self.run_script("compare.py", "sweep.h5", "extended.h5").stdout.splitlines()
-        table = lines[lines.index("times, medians") + 1:]
-        self.assertEqual(table[0].split(), ["time", "A", "B", "median", "of", "B", "/", "A", "tasks"])
-        self.assertEqual(table[1].split(), ["whole", "task", "1", "s", "1.5", "s", "1.5", "2"])
-        self.assertIn("no time of the whole task: 1 task, where a later run", lines[-1])
 
 
 class Summary(Scripts):

@@ -72,7 +72,7 @@ void bench_extension(const fs::path& path) {
   const auto begin = Clock::now();
   const Extension extension(path, plan);
   fmt::print("file: {} of {} tasks found in an earlier file in {:.2f} s, peak memory {:.0f} MB\n",
-             extension.count(Extension::Use::copy), plan.size(), seconds_since(begin), peak_megabytes());
+             extension.copied(), plan.size(), seconds_since(begin), peak_megabytes());
 }
 
 /// Writes records of sentinels only, since only the bytes matter.

@@ -19,7 +19,6 @@ from program import SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, job
 ROD = {"type": "bending_rod", "length_m": {"uniform": [1, 5]}, "radius_m": 0.05, "density_kg_m3": 1000,
        "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6}
 OLD_GUESSES = ["zero", "previous", {"oracle": {"error": 0.1}}]
-NEW_GUESSES = ["linear", {"previous": {"label": "last"}}, {"oracle": {"error": 0.1}}, {"subspace": {"size": 3}}, "zero"]
 
 
 class ExtendCase(SweepCase):
@@ -52,8 +51,8 @@ class ExtendCase(SweepCase):
         return file
 
     def assert_shared(self, ran, old, shared):
-        """The message has the numbers of all tasks, of copies, of copies with new guesses, and of tasks to run."""
-        said = re.search(rf"\b(\d+) tasks: (\d+) .*{re.escape(old)}, (\d+) .*, (\d+) ", ran.stderr)
+        """The message has the numbers of all tasks, of copies, and of tasks to run."""
+        said = re.search(rf"\b(\d+) tasks: (\d+) .*{re.escape(old)}, (\d+) ", ran.stderr)
         self.assertIsNotNone(said, ran.stderr)
         self.assertEqual(tuple(map(int, said.groups())), shared)
 
@@ -63,56 +62,45 @@ class Extending(ExtendCase):
         for sampling in ("random", "sobol"):
             with self.subTest(sampling=sampling):
                 old = self.old(f"old-{sampling}", sampling=sampling)
-                self.extend(self.new(f"samples-{sampling}", samples=5, sampling=sampling), old, (10, 4, 0, 6),
+                self.extend(self.new(f"samples-{sampling}", samples=5, sampling=sampling), old, (10, 4, 6),
                             ranks=(0, 3) if sampling == "random" else (0,))
 
     def test_more_grid_values_inserted_and_a_plain_value_that_becomes_a_grid(self):
         path = self.new("values", segments=(12, 6, 7, 9), record={"trajectory_every": 2, "solves": "all"},
                         time={"step_s": {"grid": [0.01, 0.02]}, "steps": {"grid": [5, 11]}})
-        self.extend(path, self.old(), (32, 4, 0, 28), ranks=(0, 3))
-
-    def test_more_guesses_inserted_renamed_and_moved(self):
-        file = self.extend(self.new("guesses", guesses=NEW_GUESSES), self.old(), (4, 0, 4, 0), ranks=(0, 3))
-        with h5py.File(file) as h5:
-            self.assertEqual(h5["timing/tasks/copied_guess"][:].tolist(), 4 * [[-1, 1, 1, -1, 1]])
-            self.assertEqual(h5["timing/tasks/source_task"][:].tolist(), [0, 1, 2, 3])
-            self.assertEqual(h5["timing/tasks/run"][:].tolist(), [1, 1, 1, 1])
-            with h5py.File("old.h5") as old:
-                np.testing.assert_array_equal(h5["timing/solves/cg_s"][:, 2], old["timing/solves/cg_s"][:, 2])
-                np.testing.assert_array_equal(h5["timing/solves/cg_s"][:, 4], old["timing/solves/cg_s"][:, 0])
-            self.assertTrue(np.isfinite(h5["timing/solves/cg_s"][0]).all())
+        self.extend(path, self.old(), (32, 4, 28), ranks=(0, 3))
 
     def test_all_at_once_without_rows_of_solves_and_again_from_the_extended_file(self):
         record = {"solves": "summary", "trajectory_every": 1}
         old = self.old("short", record=record)
-        more = self.new("more", record=record, samples=3, segments=(9, 6, 12), guesses=NEW_GUESSES)
-        file = self.extend(more, old, (9, 0, 4, 5))
-        most = self.new("most", record=record, samples=4, segments=(9, 6, 12), guesses=NEW_GUESSES)
-        last = self.extend(most, file, (12, 9, 0, 3))
+        more = self.new("more", record=record, samples=3, segments=(9, 6, 12))
+        file = self.extend(more, old, (9, 4, 5))
+        most = self.new("most", record=record, samples=4, segments=(9, 6, 12))
+        last = self.extend(most, file, (12, 9, 3))
         starts = status(last)["runs"]
         self.assertEqual([s["source"] for s in starts], [old, file, ""])
-        self.assertEqual([s["tasks"] for s in starts], [0, 9, 3])
+        self.assertEqual([s["tasks"] for s in starts], [4, 5, 3])
         with h5py.File(last) as h5:
             self.assertEqual(h5["timing/tasks/source_task"][:].tolist(), [0, 1, 2, -1, 3, 4, 5, -1, 6, 7, 8, -1])
-            self.assertEqual(h5["timing/tasks/run"][:].tolist(), [1, 1, 1, 2] * 3)
+            self.assertEqual(h5["timing/tasks/run"][:].tolist(), [0, 0, 1, 2] * 2 + [1, 1, 1, 2])
 
     def test_guesses_that_vary(self):
         varying = {"grid": ["previous", {"oracle": {"error": 0.1}}]}
         wider = {"grid": [{"oracle": {"error": 0.01}}, "previous", {"oracle": {"error": 0.1}}]}
         old = self.old("vary", guesses=["zero", varying])
-        self.extend(self.new("wider", guesses=["zero", {**wider, "label": "other"}]), old, (12, 8, 4, 0), ranks=(0,))
+        self.extend(self.new("wider", guesses=["zero", {**wider, "label": "other"}]), old, (12, 8, 4), ranks=(0,))
 
     def test_a_closed_loop_and_a_direct_simulation(self):
         method = {"method": {"grid": ["direct", "cg"]}}
         old = self.old("loop", evaluation="closed_loop", solve=method)
-        longer = self.new("longer", evaluation="closed_loop", solve=method, samples=3, guesses=NEW_GUESSES)
-        self.extend(longer, old, (36, 16, 0, 20))
+        longer = self.new("longer", evaluation="closed_loop", solve=method, samples=3)
+        self.extend(longer, old, (24, 16, 8))
 
     def test_a_data_set_with_more_samples(self):
         small = {"segments": (6, 9), "steps": 5}
         path = data_job("few", samples=2, **small)
         self.rodsweep(0, "run", path, "-o", "few.h5")
-        self.extend(data_job("many", samples=4, **small), "few.h5", (8, 4, 0, 4))
+        self.extend(data_job("many", samples=4, **small), "few.h5", (8, 4, 4))
 
     def test_an_unfinished_file_and_failures(self):
         solve = {"method": "cg", "preconditioner": "none", "tolerance": 1e-8, "max_iterations": 2}
@@ -122,13 +110,13 @@ class Extending(ExtendCase):
             h5["tasks/state"][:2] = 0
             h5["tasks/outcome"][2] = b"timed_out"
         ran = self.rodsweep(3, "run", path, "-o", "harder.h5", "--extend", "hard.h5", code=TASKS_FAILED)
-        self.assert_shared(ran, "hard.h5", (12, 9, 0, 3))
+        self.assert_shared(ran, "hard.h5", (12, 9, 3))
         self.rodsweep(0, "run", path, "-o", "fresh.h5", code=TASKS_FAILED)
         self.assert_same_results("fresh.h5", "harder.h5")
 
     def test_provenance_is_kept(self):
         path = self.new("kept", samples=3)
-        self.extend(path, self.old(), (6, 4, 0, 2), ranks=(0,))
+        self.extend(path, self.old(), (6, 4, 2), ranks=(0,))
         first, second = status("kept-0.h5")["runs"]
         original, = status("old.h5")["runs"]
         self.assertEqual({**first, "source": ""}, original)
@@ -145,23 +133,22 @@ class Damage(ExtendCase):
         with h5py.File(old, "r+") as h5:
             h5["solves/iterations"][int(h5["tasks/first_solve"][1]), 0, 0] += 1
             h5["steps/joint_gap"][int(h5["tasks/first_step"][2])] *= 1.5
-        for name, changes in (("copied", {"samples": 3}), ("completed", {"guesses": NEW_GUESSES})):
-            path = self.new(name, **changes)
-            self.rodsweep(0, "run", path, "-o", f"{name}-fresh.h5")
-            for ranks in (0, 3) if name == "copied" else (3,):
-                file = f"{name}-{ranks}.h5"
-                ran = self.rodsweep(ranks, "run", path, "-o", file, "--extend", old)
-                self.assertEqual(ran.stderr.count("warning"), 2, ran.stderr)
-                for task in (1, 2):
-                    self.assertIn(f"task {task} of old.h5 is damaged", ran.stderr)
-                self.assert_same_results(f"{name}-fresh.h5", file)
-                with h5py.File(file) as h5:
-                    self.assertEqual(sorted(t for t in h5["timing/tasks/source_task"][:] if t >= 0), [0, 3])
+        path = self.new("copied", samples=3)
+        self.rodsweep(0, "run", path, "-o", "fresh.h5")
+        for ranks in (0, 3):
+            file = f"copied-{ranks}.h5"
+            ran = self.rodsweep(ranks, "run", path, "-o", file, "--extend", old)
+            self.assertEqual(ran.stderr.count("warning"), 2, ran.stderr)
+            for task in (1, 2):
+                self.assertIn(f"task {task} of old.h5 is damaged", ran.stderr)
+            self.assert_same_results("fresh.h5", file)
+            with h5py.File(file) as h5:
+                self.assertEqual(sorted(t for t in h5["timing/tasks/source_task"][:] if t >= 0), [0, 3])
 
     def test_killed_and_resumed(self):
         changes = {"steps": 40, "samples": 12, "segments": (15, 30)}
         old = self.old("base", **changes)
-        path = self.new("killed", **{**changes, "samples": 30, "guesses": NEW_GUESSES})
+        path = self.new("killed", **{**changes, "samples": 30})
         self.rodsweep(3, "run", path, "-o", "unkilled.h5")
         process = start(3, "run", path, "-o", "killed.h5", "--extend", old)
         wait_for_tasks(process, "killed.h5", 4)
@@ -199,7 +186,7 @@ class Elsewhere(ExtendCase):
 
     def assert_extended(self, path, ranks):
         ran = self.rodsweep(ranks, "run", path, "-o", f"new-{ranks}.h5", "--extend", "far/away/old.h5")
-        self.assert_shared(ran, "far/away/old.h5", (4, 2, 0, 2))
+        self.assert_shared(ran, "far/away/old.h5", (4, 2, 2))
         self.rodsweep(0, "run", path, "-o", f"fresh-{ranks}.h5")
         self.assert_same_results(f"fresh-{ranks}.h5", f"new-{ranks}.h5")
 
@@ -252,7 +239,8 @@ class Refusing(ExtendCase):
         """For the words of refusals see tests/runner/file/test_extension.cpp."""
         old = self.old()
         for changes, *says in (({"seed": 6}, "seed: 6 here, 5 in old.h5"),
-                               ({"segments": (6, 7)}, "scene.segments: ", "[6,7]", "9 in old.h5")):
+                               ({"segments": (6, 7)}, "scene.segments: ", "[6,7]", "9 in old.h5"),
+                               ({"guesses": [*OLD_GUESSES, "linear"]}, "guesses: ", "without --extend")):
             with self.subTest(changes=changes):
                 says = ("other.json: ", "--extend", *says)
                 self.assert_refused(self.new("other", **changes), "no.h5", old, says=says)

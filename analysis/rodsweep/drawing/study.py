@@ -77,9 +77,6 @@ class Study:
                  f"{os.path.basename(self.file.path)}: {self.census.text()}"]
         if self.left_out:
             parts[-1] += f"; {self.left_out}"
-        note = remarks.timing_note(self.file, self.sims.tasks())
-        if note:
-            parts[-1] += f". {note.rstrip('.')}"
         if revisions:
             parts[-1] += f"; revision {revisions}"
         return " ".join(parts) + "."

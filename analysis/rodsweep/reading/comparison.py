@@ -196,15 +196,13 @@ class Comparison:
                     yield label, float(tolerance), *(estimate[g, t] for estimate in estimates)
 
     def times(self):
-        """Yields (what, median of one, median of the other, median of the tasks' quotients, number of tasks). Tasks that
-        timed_apart() counts have no time of a whole task."""
+        """Yields (what, median of one, median of the other, median of the tasks' quotients, number of tasks)."""
         ok = self._both_ok()
         a, b = self.a[ok], self.b[ok]
-        apart = self._timed_apart(a, b)
-        columns = [("whole task", *(np.where(apart, np.nan, self._per_task(file, "/timing/tasks/elapsed_s", tasks))
-                                    for file, tasks in ((self.one, a), (self.other, b))))]
-        columns.append(("direct solve", self._of_solves(self.one, a, ["direct_s"]),
-                        self._of_solves(self.other, b, ["direct_s"])))
+        elapsed = "/timing/tasks/elapsed_s"
+        columns = [("whole task", self._per_task(self.one, elapsed, a), self._per_task(self.other, elapsed, b)),
+                   ("direct solve", *(self._of_solves(file, tasks, ["direct_s"])
+                                      for file, tasks in ((self.one, a), (self.other, b))))]
         for g, label in enumerate(self.one.guesses):
             places = self.guesses[ok][:, g] if len(a) else np.empty(0, dtype=int)
             if (places >= 0).any():
@@ -216,14 +214,6 @@ class Comparison:
             if both.any():
                 yield (what, float(np.median(here[both])), float(np.median(there[both])),
                        float(np.median(there[both] / here[both])), int(both.sum()))
-
-    def timed_apart(self):
-        """Number of tasks that ran only some of their guesses in the last run of a file (run --extend)."""
-        ok = self._both_ok()
-        return int(self._timed_apart(self.a[ok], self.b[ok]).sum())
-
-    def _timed_apart(self, a, b):
-        return self.one.timed_apart(a) | self.other.timed_apart(b)
 
     def _both_ok(self):
         return self.one.ok[self.a] & self.other.ok[self.b]

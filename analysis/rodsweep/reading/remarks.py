@@ -38,13 +38,6 @@ def timing_warning(file, tasks):
             file.oversubscribed(tasks) else "")
 
 
-def timing_note(file, tasks):
-    """A further note on times beside timing_warning(); or empty."""
-    apart = int(file.timed_apart(tasks).sum()) if len(tasks) else 0
-    return (f"In {apart} tasks, some guesses were timed in another run than the others (run --extend): speedups "
-            "between them compare two runs.") if apart else ""
-
-
 def oracle_note(file, guesses):
     """A sentence and a blank for outputs with times of guesses; empty without an oracle."""
     if not any("oracle" in file.guesses[g] for g in guesses):

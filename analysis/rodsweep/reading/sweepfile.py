@@ -166,13 +166,6 @@ class SweepFile:
             return any(marked)
         return any(0 <= n < len(marked) and marked[n] for n in set(numbers.tolist()))
 
-    def timed_apart(self, tasks):
-        """Mask of the tasks with some guesses timed in another run than the others (run --extend)."""
-        if not self.has("/timing/tasks/copied_guess"):
-            return np.zeros(len(tasks), dtype=bool)
-        copied = self.h5["/timing/tasks/copied_guess"][:][tasks] == 1
-        return copied.any(axis=1) & ~copied.all(axis=1) & (self.own_guess[tasks] < 0)
-
     def job_text(self):
         """The job as it was given, in bytes; empty if the file does not have it."""
         if "/job/text" not in self.h5:

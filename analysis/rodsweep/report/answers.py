@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rodsweep.reading import blocks, remarks, texts, timings
+from rodsweep.reading import blocks, texts, timings
 
 FAILURES_SHOWN = 12
 DOT_WIDTH, BAR_WIDTH = 96, 120    # of the drawings in the table, in pixels
@@ -176,9 +176,3 @@ def steps(found, guesses, labels):
             rows.append((title, {name: [texts.short_text(float(of[g]), 2) for of in (estimate.value, largest)]
                                  for name, (estimate, largest) in block.steps.items()}))
     return rows
-
-
-def notes(file, sims, guesses):
-    """Notes on the reliability of the times; remarks of `reading`."""
-    tasks = sims.tasks()
-    return [note for note in (remarks.timing_note(file, tasks), remarks.oracle_note(file, guesses).strip()) if note]

@@ -30,7 +30,7 @@ class Sweep:
     no_ratios: str               # the reason; or empty
     conditions: dict = field(default_factory=dict)
     warning: str = ""
-    notes: list = field(default_factory=list)
+    oracle_note: str = ""
     missed: str = ""             # timed solves that missed the tolerance
     large_residuals: str = ""    # of Newton
     tolerance: str = ""          # of the iterations in the answers
@@ -82,7 +82,7 @@ def _found(file, options, sims, guesses, tolerances, budget, data):
     data.update(families=[family for family in shown if family["axes"]], warning=warning,
                 tolerance=0 if headline is None else tolerances.index(headline))
     return {"conditions": remarks.conditions(file, tasks), "warning": warning,
-            "notes": answers.notes(file, sims, guesses), "missed": unconverged.missed_text(file, tasks),
+            "oracle_note": remarks.oracle_note(file, guesses).strip(), "missed": unconverged.missed_text(file, tasks),
             "large_residuals": unconverged.newton_text(file, tasks),
             "tolerance": "" if headline is None else texts.tolerance_label(file.tolerances[headline]),
             "timed_tolerance": remarks.solve_tolerance(file, tasks),
