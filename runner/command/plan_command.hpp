@@ -18,8 +18,8 @@ struct PlanOptions {
 };
 
 inline constexpr const char* plan_help =
-    "Runs parts of up to three tasks (cheapest, median, most expensive), or some steps of a training, unless\n"
-    "--no-probe is given. The data set of a training must exist.\n\n"
+    "Runs parts of up to three tasks (cheapest, median, most expensive), unless --no-probe is given. Of a training it\n"
+    "prints the size; `run` prints the time that is left. The data set of a training must exist.\n\n"
     "Examples:\n"
     "  rodsweep plan jobs/spatial_bending.json\n"
     "  rodsweep plan jobs/spatial_bending.json --workers 64      resources to request from Slurm";

@@ -1,5 +1,4 @@
-// The command `plan` for a job of kind "train": parameters, examples and steps. A probe computes a few examples and
-// steps to estimate memory and time. Throws JobError and FileError. A probe needs PETSc.
+// The command `plan` for a job of kind "train": parameters, examples and steps. Throws JobError and FileError.
 #pragma once
 
 #include "runner/command/plan_command.hpp"

@@ -10,8 +10,10 @@
 
 namespace rodsweep {
 
-std::vector<Example> examples_of(const TrainingJob& training, const std::vector<LearningSets::Simulation>& simulations,
-                                 int threads, const Copies& copies) {
+/// The examples of these simulations, in order; not normalised. Processes a few simulations at a time.
+static std::vector<Example> examples_of(const TrainingJob& training,
+                                        const std::vector<LearningSets::Simulation>& simulations, int threads,
+                                        const Copies& copies = {}) {
   std::vector<Example> out;
   for (std::size_t begin = 0; begin < simulations.size(); begin += static_cast<std::size_t>(threads)) {
     std::vector<StoredSimulation> read_now;  // by one thread: HDF5 is not thread-safe

@@ -24,10 +24,6 @@ struct TrainingData {
 /// Throws FileError if there are too few examples.
 TrainingData training_data(const TrainingJob& training, const LearningSets& sets, int threads);
 
-/// The examples of these simulations, in order; not normalised. Processes a few simulations at a time.
-std::vector<Example> examples_of(const TrainingJob& training, const std::vector<LearningSets::Simulation>& simulations,
-                                 int threads, const Copies& copies = {});
-
 /// The validation simulations i to measure CG ratios on, with i mod `parts` = `part`.
 std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const LearningSets& sets, int part,
                                                 int parts);

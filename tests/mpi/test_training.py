@@ -6,6 +6,7 @@ Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
 
 import json
 import os
+import re
 import signal
 import time
 import unittest
@@ -176,15 +177,12 @@ class Refused(TrainingCase):
     def test_plan_and_validate(self):
         path = train_job("planned")
         planned = json.loads(rodsweep(0, "plan", path, "--json").stdout)
-        self.assertEqual((planned["counts_are"], planned["epochs"]), ("exact", 3))
-        examples, each = planned["training_examples"], planned["steps"] // 3
-        self.assertIn(f"{examples} examples from 18 simulations, {each} steps in each of 3 epochs",
-                      self.rodsweep(0, "run", path, "-o", "planned.h5").stderr)
-        bound = json.loads(rodsweep(0, "plan", path, "--json", "--no-probe").stdout)
-        self.assertEqual((bound["counts_are"], bound["training_examples"], bound["steps"]), ("upper bounds", 180, 66))
-        self.assertGreater(planned["core_hours"], 0)
-        self.assertGreater(planned["bytes_per_rank"], 1e5)
-        self.assertNotIn("core_hours", json.loads(rodsweep(0, "plan", path, "--json", "--no-probe").stdout))
+        self.assertEqual([planned[key] for key in ("training_simulations", "epochs", "most_training_examples", "most_steps")],
+                         [18, 3, 180, 66])
+        ran = self.rodsweep(0, "run", path, "-o", "planned.h5").stderr
+        examples, each = map(int, re.search(r"(\d+) examples from 18 simulations, (\d+) steps in each", ran).groups())
+        self.assertLessEqual(examples, 180)
+        self.assertLessEqual(3 * each, 66)
         said = rodsweep(3, "plan", path)
         self.assertEqual(said.stdout.count("parameters"), 1, said.stdout)
         self.assertIn("planned.json: ", self.rodsweep(0, "validate", path).stdout)
