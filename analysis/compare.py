@@ -88,7 +88,7 @@ def text(found, pairs, keys, options):
         for path in found.left_out:
             group = "/" + path.split("/")[1]
             groups[group] = groups.get(group, 0) + 1
-        lines.append("not compared (missing in one file, or of another shape): " +
+        lines.append("not compared (missing in one file, of another shape or at other times): " +
                      ", ".join(f"{group} ({count} column{'s' * (count > 1)})" for group, count in groups.items()))
     changed = [place for place in found.differing if outcomes(found, place)[0] != outcomes(found, place)[1]]
     if changed:

@@ -29,7 +29,7 @@ constexpr const char* exit_codes =
     "  5  stopped early; the tasks need a longer --time-limit or more memory\n"
     "  6  all workers were lost; --resume continues\n"
     "  7  standard output could not be written; everything else succeeded\n"
-    "  8  rerun, compare: the results differ\n"
+    "  8  compare: the results differ\n"
     "  9  the training diverged; its best model is kept\n"
     "  10 info --verify, compare: results in a file are damaged";
 
@@ -258,7 +258,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   PlanOptions plan;
   RerunOptions rerun;
   SystemsOptions systems;
-  run.program = plan.program = argv[0];
+  run.program = plan.program = rerun.program = argv[0];
   MergeOptions merge;
   run.command = rerun.command = systems.command = merge.command = typed(argc, argv);
   ValidateOptions validate;

@@ -68,6 +68,10 @@ std::string merge_line(const std::string& program, const fs::path& file, const S
   return fmt::format("{} merge {}", shell_quoted(program), files);
 }
 
+std::string compare_line(const std::string& program, const fs::path& file, const fs::path& other) {
+  return fmt::format("{} compare {} {}", shell_quoted(program), word_of(file), word_of(other));
+}
+
 std::string script_line(const std::string& script, const fs::path& file) {
   return fmt::format("/usr/bin/python3 {} {}", shell_quoted(path_from_here(script)), word_of(file));
 }

@@ -22,6 +22,10 @@ std::string stopped_text(int signal, RunOptions options, int ranks);
 /// "rodsweep merge SHARDS... -o FILE".
 std::string merge_line(const std::string& program, const std::filesystem::path& file, const Shard& shard);
 
+/// "rodsweep compare results/demo.h5 results/demo-task-12.h5".
+std::string compare_line(const std::string& program, const std::filesystem::path& file,
+                         const std::filesystem::path& other);
+
 /// "/usr/bin/python3 analysis/summary.py results/demo.h5". The script is that of this program's source tree or
 /// installation; its path is relative to the current folder where possible.
 std::string script_line(const std::string& script, const std::filesystem::path& file);

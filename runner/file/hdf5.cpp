@@ -190,21 +190,6 @@ bool is_contiguous(hid_t file, const std::string& path) {
   return H5Pget_layout(creation_of(open_dataset(file, path), path).id()) == H5D_CONTIGUOUS;
 }
 
-std::vector<std::string> members(hid_t group) {
-  H5G_info_t info;
-  check(H5Gget_info(group, &info), "H5Gget_info");
-  std::vector<std::string> names(info.nlinks);
-  for (hsize_t i = 0; i < info.nlinks; ++i) {
-    const auto name_at = [&](char* name, std::size_t bytes) {
-      return check(H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, bytes, H5P_DEFAULT),
-                   "H5Lget_name_by_idx");
-    };
-    names[i].resize(static_cast<std::size_t>(name_at(nullptr, 0)));
-    name_at(names[i].data(), names[i].size() + 1);
-  }
-  return names;
-}
-
 RowDataset::RowDataset(hid_t file, std::string path) : path_(std::move(path)) {
   if (!exists(file, path_)) return;
   dataset_ = open_dataset(file, path_);

@@ -115,8 +115,6 @@ std::vector<hsize_t> extent(const Dataset& dataset, const std::string& path);
 hsize_t value_count(const Dataset& dataset, const std::string& path);
 bool is_contiguous(hid_t file, const std::string& path);  ///< false: in chunks, which may be compressed
 
-std::vector<std::string> members(hid_t group);  ///< names, sorted
-
 /// An open dataset for access to rows [first, first + count); empty if `path` does not exist.
 class RowDataset {
  public:

@@ -361,8 +361,7 @@ class Speaking(SweepCase):
         self.rodsweep(2, "run", job("files"))
         path = "results/files.h5"
         self.speak_once((("query", path), "cg_ratio.previous"), (("schema",), '"rodsweep job"'),
-                        (("rerun", path, "3"), "identical to task 3"),
-                        (("merge", path, "-o", "results/files-all.h5"), "6 of 6"))
+                        (("rerun", path, "3"), "task 3: ok"), (("merge", path, "-o", "results/files-all.h5"), "6 of 6"))
         made = sorted(name for name in os.listdir("results") if name.startswith("files"))
         self.assertEqual(made, ["files-all.h5", "files-task-3.h5", "files.h5"])
 

@@ -1,9 +1,9 @@
 """Two sweeps, task by task: common tasks, values that differ, CG ratios and times.
 
 Two tasks are the same if everything that their results depend on is equal: seed, sample, every key that applies to
-them, and in a closed loop the guess. With by="parameters", the seed and keys that neither job varies do not count. Two
-guesses are the same if their label and their entry in the job are equal; with by="parameters" the label is enough.
-Models and data sets are identified by their path in the job.
+them, and in a closed loop the guess. Parameters of a guess count if both jobs have that guess. With by="parameters",
+the seed and keys that neither job varies do not count. Two guesses are the same if their label and their entry in the
+job are equal; with by="parameters" the label is enough. Models and data sets are identified by their path in the job.
 """
 
 import json
@@ -102,20 +102,19 @@ def _identities(file, by, one, other):
     else:
         names = sorted({*one.parameters, *other.parameters})
         head = f"{file.job().get('seed')} "
-    texts = [f"{head}{sample}" for sample in file.sample]
-    guesses = _guess_keys(file, by)
-    for task, own in enumerate(file.own_guess):
-        if own >= 0:
-            texts[task] += f" {guesses[own]}"
+    guesses, shared = _guess_keys(file, by), {*_guess_keys(one, by)} & {*_guess_keys(other, by)}
+    parts = [[f"{head}{sample} {guesses[own] if own >= 0 else ''}"] for sample, own in zip(file.sample, file.own_guess)]
     for name in names:
         parameter = file.parameters.get(name)
         if parameter is None:
             continue
         guess, key = _of_guess(name)
-        for task, (value, applies) in enumerate(zip(parameter.values.tolist(), parameter.applies())):
-            if applies and (guess is None or guess == file.own_guess[task]):
-                texts[task] += f"\n{key}={value!r}"
-    return texts
+        if guess is not None:
+            key = guesses[guess] + key
+        for part, own, value, applies in zip(parts, file.own_guess, parameter.values.tolist(), parameter.applies()):
+            if applies and (guess in (None, own) or (own < 0 and guesses[guess] in shared)):
+                part.append(f"{key}={value!r}")
+    return ["\n".join(sorted(part)) for part in parts]
 
 
 def _of_guess(name):
@@ -139,7 +138,7 @@ def _guess_keys(file, by):
 
 class Comparison:
     """compared: number of pairs done in both; columns: {path: ColumnDifference}; differing: {index of the pair:
-    paths}; left_out: paths that are missing in one file or have another shape.
+    paths}; left_out: paths that are missing in one file, have another shape or are of other times.
     damaged: tasks of A whose values contradict a checksum, in A or B: those with equal checksums and other values, and, of
     equal jobs, those with other checksums or row counts and equal values. A task's number is part of its checksum."""
 
@@ -241,8 +240,7 @@ class Comparison:
         return found
 
     def _compare(self, path):
-        every = [file.job().get("record", {}).get("trajectory_every") for file in (self.one, self.other)]
-        if not (self.one.has(path) and self.other.has(path)) or (path in FRAMES and every[0] != every[1]):
+        if not (self.one.has(path) and self.other.has(path)):
             if self.one.has(path) or self.other.has(path):
                 self.left_out.append(path)
             return
@@ -256,12 +254,20 @@ class Comparison:
         group = path.rpartition("/")[0]
         places = _places(self.one, group, self.a), _places(self.other, group, self.b)
         same = places[0] is not None and places[1] is not None and places[0][1] == places[1][1]
+        if path in FRAMES:
+            same = same & self._same_frame_times()
         if not np.all(same):
             self.left_out.append(path)
         if np.any(same):
             comparable = np.flatnonzero(same)
             for pairs in _blocks(places[0][1][comparable]):
                 self._compare_block(path, comparable[pairs], places, by_guess)
+
+    def _same_frame_times(self):
+        """Whether two tasks have their second frame at the same time."""
+        here, there = (file.h5["/trajectories/time_s"][:, 1:2][tasks]
+                       for file, tasks in ((self.one, self.a), (self.other, self.b)))
+        return np.all((here == there) | (np.isnan(here) & np.isnan(there)), axis=1)
 
     def _compare_block(self, path, pairs, places, by_guess):
         rows = [_rows(first[pairs], count[pairs]) for first, count in places]
