@@ -12,11 +12,6 @@ void Normalisation::apply(Eigen::Ref<Tensor<float>> x) const {
   x.array().colwise() /= deviation;
 }
 
-void Normalisation::undo(Eigen::Ref<Tensor<float>> x) const {
-  x.array().colwise() *= deviation;
-  x.array().colwise() += mean;
-}
-
 FeatureStatistics::FeatureStatistics(std::vector<int> groups) : groups_(std::move(groups)) {
   const int features = std::accumulate(groups_.begin(), groups_.end(), 0);
   mean_.setZero(features);

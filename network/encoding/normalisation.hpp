@@ -16,7 +16,6 @@ struct Normalisation {
   Eigen::ArrayXf mean, deviation;
 
   void apply(Eigen::Ref<Tensor<float>> x) const;
-  void undo(Eigen::Ref<Tensor<float>> x) const;
 };
 
 class FeatureStatistics {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -18,12 +17,6 @@ std::string duration_text(double seconds) {
   constexpr long long day = 86400, year = 365 * day;
   if (total < 2 * year) return fmt::format("{} d {:02} h", total / day, total % day / 3600);
   return fmt::format("{:.0f} years", seconds / year);
-}
-
-std::string short_duration_text(double seconds) {
-  if (std::isnan(seconds)) return "-";
-  if (seconds < 0.9995e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
-  return seconds < 0.9995 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
 }
 
 std::string bytes_text(std::int64_t bytes) {
@@ -45,18 +38,6 @@ std::string shell_quoted(std::string_view word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
-}
-
-std::string csv_text(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::size_t characters(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 std::string json_text(const nlohmann::ordered_json& value, int indent) {

@@ -59,10 +59,4 @@ std::vector<std::string> idle_petsc_options() {
   return idle;
 }
 
-std::string petsc_version() {
-  PetscInt major = 0, minor = 0, subminor = 0;
-  PetscGetVersionNumber(&major, &minor, &subminor, nullptr);
-  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(subminor);
-}
-
 }  // namespace rodsweep

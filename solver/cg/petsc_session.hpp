@@ -28,7 +28,4 @@ class PetscSession {
 /// these have no effect.
 std::vector<std::string> idle_petsc_options();
 
-/// The version of the loaded library, such as "3.18.5".
-std::string petsc_version();
-
 }  // namespace rodsweep

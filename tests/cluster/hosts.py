@@ -54,9 +54,6 @@ class Host:
     def cut_off(self):
         run("ip", "link", "set", self.link, "down")
 
-    def reconnect(self):
-        run("ip", "link", "set", self.link, "up")
-
     def die(self):
         """Kills the host with all its processes; its network goes with it."""
         if self.process.poll() is None:

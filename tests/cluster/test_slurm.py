@@ -46,9 +46,6 @@ class SlurmCase(SweepCase):
     def wait_for_tasks(self, count, seconds=120):
         wait_until(f"{count} tasks", seconds, lambda: self.done() >= count)
 
-    def wait_for_state(self, number, *wanted, seconds=300):
-        return wait_until(f"job {number} {wanted}", seconds, lambda: self.slurm.job(number)["JobState"] in wanted)
-
     def wait_for_end(self, number, state="COMPLETED", seconds=300):
         ended = ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL")
         # A job that requeues itself is COMPLETED or FAILED for a moment.

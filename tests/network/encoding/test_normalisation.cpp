@@ -10,7 +10,7 @@ namespace rodsweep::test_normalisation {
 
 using namespace test;
 
-TEST_CASE("normalised features have mean 0 and deviation 1, and come back") {
+TEST_CASE("normalised features have mean 0 and deviation 1") {
   Tensor<float> x = (50 * random_matrix(3, 400, 1)).cast<float>();
   x.row(1).array() += 1e4F;
   FeatureStatistics statistics({1, 1, 1});
@@ -23,8 +23,6 @@ TEST_CASE("normalised features have mean 0 and deviation 1, and come back") {
     CHECK(y.row(i).cast<double>().mean() == Approx(0).margin(1e-4));
     CHECK(std::sqrt(y.row(i).cast<double>().squaredNorm() / 400) == Approx(1).epsilon(1e-4));
   }
-  n.undo(y);
-  CHECK((y - x).cwiseAbs().maxCoeff() < 1e-2F);
 }
 
 TEST_CASE("statistics don't depend on how the columns are handed over, to the bit") {
