@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "runner/file/reader_constants.hpp"
-#include "runner/job/job_schema.hpp"
+#include "runner/keys/job_schema.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/text/nearest.hpp"
 

@@ -10,10 +10,10 @@
 #include "runner/command/next_line.hpp"
 #include "runner/command/plan_estimate.hpp"
 #include "runner/command/training_plan.hpp"
-#include "runner/experiment/evaluation.hpp"
-#include "runner/experiment/host_memory.hpp"
-#include "runner/experiment/inputs.hpp"
 #include "runner/file/file_creation.hpp"
+#include "runner/measure/evaluation.hpp"
+#include "runner/measure/host_memory.hpp"
+#include "runner/measure/inputs.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/text/beside_program.hpp"
 

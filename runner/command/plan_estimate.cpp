@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "runner/experiment/host_memory.hpp"
+#include "runner/measure/host_memory.hpp"
 
 namespace rodsweep {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/experiment/task_body.hpp"
+#include "runner/measure/task_body.hpp"
 #include "runner/plan/plan.hpp"
 
 namespace rodsweep {

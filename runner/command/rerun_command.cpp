@@ -6,9 +6,9 @@
 #include "runner/command/next_line.hpp"
 #include "runner/command/stored_task.hpp"
 #include "runner/dispatch/stop_signal.hpp"
-#include "runner/experiment/task_body.hpp"
 #include "runner/file/results_file.hpp"
 #include "runner/file/unfinished_file.hpp"
+#include "runner/measure/task_body.hpp"
 
 namespace rodsweep {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "runner/command/next_line.hpp"
-#include "runner/experiment/inputs.hpp"
 #include "runner/file/file_error.hpp"
+#include "runner/measure/inputs.hpp"
 #include "solver/cg/petsc_session.hpp"
 
 namespace rodsweep {

@@ -4,10 +4,10 @@
 
 #include "runner/command/stored_task.hpp"
 #include "runner/dispatch/stop_signal.hpp"
-#include "runner/experiment/task_body.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/systems_file.hpp"
 #include "runner/file/unfinished_file.hpp"
+#include "runner/measure/task_body.hpp"
 
 namespace rodsweep {
 

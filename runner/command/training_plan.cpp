@@ -67,7 +67,7 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
 }  // namespace
 
 ExitCode show_training_plan(const PlanOptions& options, const Job& job, Console& console) {
-  const TrainingJob training = training_job(job);
+  const TrainingJob training = training_job(job.values, job.path);
   const Extent extent = extent_of(training, LearningSets(training, job));
   console.result(options.json ? json_text(to_json(job, training, extent)) : to_text(options, job, training, extent));
   return ExitCode::ok;

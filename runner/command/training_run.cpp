@@ -14,7 +14,7 @@
 #include "runner/file/file_reading.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/job/job_difference.hpp"
-#include "runner/job/training_job.hpp"
+#include "runner/specs/training_job.hpp"
 #include "runner/terminal/progress_line.hpp"
 #include "runner/training/training.hpp"
 #include "solver/step/stopwatch.hpp"
@@ -70,7 +70,7 @@ class TrainingRun {
       : options_(options),
         job_(job),
         path_(path),
-        training_job_(training_job(job)),
+        training_job_(training_job(job.values, job.path)),
         mpi_(mpi),
         console_(console),
         where_(placement(mpi.world(), RankRoles::all_work)),

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/job/training_job.hpp"
+#include "runner/specs/training_job.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {

@@ -5,10 +5,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "runner/experiment/inputs.hpp"
 #include "runner/file/file_error.hpp"
-#include "runner/job/training_job.hpp"
+#include "runner/measure/inputs.hpp"
 #include "runner/plan/plan.hpp"
+#include "runner/specs/training_job.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/training/learning_sets.hpp"
 
@@ -39,7 +39,7 @@ std::string text_of(const nlohmann::json& json, const char* key) {
 void check_data(const Job& job) {
   if (!is_training(job) || !missing_files(job).empty()) return;
   try {
-    const LearningSets sets(training_job(job), job);
+    const LearningSets sets(training_job(job.values, job.path), job);
   } catch (const FileError& error) {
     throw job_error(job.path, "data", error.what());
   }

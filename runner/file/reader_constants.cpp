@@ -6,9 +6,9 @@
 
 #include "runner/file/layout.hpp"
 #include "runner/file/planned_columns.hpp"
-#include "runner/job/guess_keys.hpp"
-#include "runner/job/job_keys.hpp"
+#include "runner/keys/tables.hpp"
 #include "runner/plan/task_outcome.hpp"
+#include "runner/specs/guess_keys.hpp"
 
 namespace rodsweep {
 namespace {

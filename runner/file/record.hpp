@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/job/task.hpp"
+#include "runner/plan/task.hpp"
 #include "runner/plan/task_outcome.hpp"
 
 namespace rodsweep {

@@ -7,19 +7,18 @@
 #include <cstring>
 #include <fstream>
 
-#include "runner/job/job_keys.hpp"
-#include "runner/job/job_reader.hpp"
 #include "runner/job/scene_checks.hpp"
-#include "runner/job/strict_json.hpp"
-#include "runner/job/sweep_space.hpp"
-#include "runner/job/training_job.hpp"
-#include "runner/text/shortened.hpp"
+#include "runner/keys/job_reader.hpp"
+#include "runner/keys/tables.hpp"
+#include "runner/specs/training_job.hpp"
+#include "runner/sweep/sweep_space.hpp"
+#include "runner/text/key_path.hpp"
+#include "runner/text/strict_json.hpp"
 
 namespace rodsweep {
 namespace {
 
 constexpr std::size_t most_bytes = 16 << 20;  // takes a second and a gigabyte to read
-constexpr std::size_t longest_path = 200;
 
 void check_guesses(const Job& job, const SweepSpace& space) {
   if (!job.values.contains("guesses")) return;
@@ -63,7 +62,7 @@ Job parsed(std::string text, const std::filesystem::path& path, Look look) {
   job.name = job.values["name"];
   job.seed = job.values["seed"];
   if (is_training(job)) {
-    training_job(job);
+    training_job(job.values, path);
     return job;
   }
   job.samples = job.values["samples"];
@@ -76,10 +75,6 @@ Job parsed(std::string text, const std::filesystem::path& path, Look look) {
 }
 
 }  // namespace
-
-JobError job_error(const std::filesystem::path& file, const std::string& key_path, const std::string& text) {
-  return JobError(file.string() + ": " + (key_path.empty() ? "" : shortened(key_path, longest_path) + ": ") + text);
-}
 
 bool is_training(const Job& job) { return job.values["kind"] == "train"; }
 
@@ -121,6 +116,22 @@ std::string read_job_text(const std::filesystem::path& path) {
 
 Job read_job(const std::filesystem::path& path, MissingFiles missing) {
   return parse_job(read_job_text(path), path, missing);
+}
+
+std::vector<MissingFile> missing_files(const Job& job) {
+  std::vector<MissingFile> missing;
+  for (const auto& [written, file] : job.files)
+    if (file.hash.empty()) missing.push_back({file.uses.front().key_path, written, file.path});
+  if (!is_training(job)) return missing;
+  const auto& data = job.values["data"];
+  const bool listed = data.is_array();
+  for (std::size_t i = 0; i < (listed ? data.size() : 1); ++i) {
+    const std::string written = listed ? data[i] : data;
+    const std::filesystem::path path = job.path.parent_path() / written;
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) missing.push_back({listed ? element("data", i) : "data", written, path});
+  }
+  return missing;
 }
 
 }  // namespace rodsweep

@@ -2,36 +2,25 @@
 // the run. The message contains file, key path, value, the allowed values and the nearest known key.
 //
 // A sweep replaces a value: {"grid": [values]}, {"zip": [values]}, {"uniform": [a, b]}, {"log_uniform": [a, b]},
-// {"integer": [a, b]}. runner/job/sweep_space.hpp explains their expansion.
+// {"integer": [a, b]}. runner/sweep/sweep_space.hpp explains their expansion.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "runner/job/input_file.hpp"
+#include "runner/inputs/input_file.hpp"
+#include "runner/text/job_error.hpp"
 
 namespace rodsweep {
 
-/// An error in a job file. what() is the complete message for the user: one line per mistake, each with the file first.
-class JobError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// "FILE: KEY.PATH: TEXT"; without a key path "FILE: TEXT".
-JobError job_error(const std::filesystem::path& file, const std::string& key_path, const std::string& text);
-
-struct Job {
-  std::filesystem::path path;  ///< as given by the user; its folder is the base of relative paths in the job
-  std::string text;            ///< the unchanged file content, stored in /job/text
+struct Job : JobFiles {
+  std::string text;  ///< the unchanged file content, stored in /job/text
   std::string name;
   std::uint64_t seed = 0;
   std::int64_t samples = 1;           ///< 1 in a training
-  InputFiles files;                   ///< input files
   nlohmann::ordered_json values;      ///< validated, with all defaults; sweeps not expanded
   std::vector<std::string> warnings;  ///< one line for each implausible value, ready to print
 
@@ -39,7 +28,7 @@ struct Job {
   nlohmann::ordered_json guesses() const;
 };
 
-/// Whether the job trains a network. Then it becomes a TrainingJob (runner/job/training_job.hpp), not a Plan.
+/// Whether the job trains a network. Then it becomes a TrainingJob (runner/specs/training_job.hpp), not a Plan.
 bool is_training(const Job& job);
 
 /// Reads and validates all keys and all values of sweeps; throws JobError. Plan (runner/plan/plan.hpp) checks conditions
@@ -49,5 +38,8 @@ std::string read_job_text(const std::filesystem::path& path);  ///< throws JobEr
 Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles missing = MissingFiles::refused);
 /// For a job whose files another rank has read.
 Job parse_job(std::string text, const std::filesystem::path& path, const InputFiles& files);
+
+/// The missing files of a job read with MissingFiles::accepted, and missing data sets of a training.
+std::vector<MissingFile> missing_files(const Job& job);
 
 }  // namespace rodsweep

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <functional>
 
-#include "runner/job/curve_file.hpp"
-#include "runner/job/scene_keys.hpp"
-#include "runner/job/skeleton_file.hpp"
-#include "runner/job/sweep.hpp"
+#include "runner/inputs/curve_file.hpp"
+#include "runner/inputs/skeleton_file.hpp"
+#include "runner/keys/sweep_words.hpp"
+#include "runner/specs/scene_keys.hpp"
 #include "runner/text/key_path.hpp"
 
 namespace rodsweep {

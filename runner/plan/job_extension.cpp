@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "runner/job/guess_keys.hpp"
 #include "runner/job/job_difference.hpp"
-#include "runner/job/sweep.hpp"
+#include "runner/keys/sweep_words.hpp"
+#include "runner/specs/guess_keys.hpp"
 #include "runner/text/key_path.hpp"
 
 namespace rodsweep {

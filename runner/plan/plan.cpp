@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "runner/job/guess_keys.hpp"
-#include "runner/job/task_spec.hpp"
 #include "runner/plan/scene_spec.hpp"
+#include "runner/specs/guess_keys.hpp"
+#include "runner/specs/solve_keys.hpp"
 #include "solver/numbers/counter_random.hpp"
 
 namespace rodsweep {
@@ -67,7 +67,7 @@ void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const O
 Plan::Plan(Job job)
     : job_(std::move(job)),
       space_(job_.values, job_.path),
-      guess_labels_(rodsweep::guess_labels(job_)),
+      guess_labels_(rodsweep::guess_labels(job_.guesses())),
       task_time_limit_s_(job_.values["task_time_limit_s"]) {
   expand();
 }
@@ -77,7 +77,7 @@ void Plan::expand() {
   constexpr std::int64_t most_built = 100'000;
   std::int64_t built = 0;
   const std::int64_t points = point_count(space_, job_);
-  const OutputSpec output = output_spec(job_);
+  const OutputSpec output = output_spec(job_.values["record"]);
   bool contact = false, balance = false;
   Point values;
   for (std::int64_t point = 0; point < points; ++point) {
@@ -85,7 +85,7 @@ void Plan::expand() {
     const SceneSpec scene = scene_spec(values, job_);
     check_scene(scene, job_);
     if (point % job_.samples == 0 && (built += segment_count(scene)) <= most_built) check_built(scene, job_);
-    check_method(values, job_);
+    check_method(values, guess_specs(values, guess_labels_, job_), job_);
     contact = contact || rod_parameters(scene).contact;
     const TimeSpec time = time_spec(values, job_);
     balance = balance || time.balance;
@@ -126,7 +126,7 @@ Plan Plan::alone(std::int64_t index, int trajectory_every) const {
   plan.max_frames_ = 0;
   Task task = tasks_.at(index);
   const TaskSpec spec = this->spec(index);
-  size_rows(task, spec.scene, spec.time, output_spec(plan.job_));
+  size_rows(task, spec.scene, spec.time, output_spec(plan.job_.values["record"]));
   plan.add(task);
   return plan;
 }
@@ -144,9 +144,9 @@ TaskSpec Plan::spec(std::int64_t index) const {
   spec.time = time_spec(point, job_);
   spec.solve = solve_spec(point, job_);
   spec.evaluation = evaluation(point);
-  if (spec.solve.method == Method::cg) spec.guesses = guess_specs(point, job_);
+  if (spec.solve.method == Method::cg) spec.guesses = guess_specs(point, guess_labels_, job_);
   spec.own_guess = task.own_guess;
-  spec.output = output_spec(job_);
+  spec.output = output_spec(job_.values["record"]);
   spec.seed = random_bits(job_.seed, static_cast<std::uint64_t>(task.sample), random_stream("guesses"));
   spec.time_limit_s = task_time_limit_s_;
   return spec;

@@ -13,10 +13,11 @@
 #include <vector>
 
 #include "runner/job/job.hpp"
-#include "runner/job/sweep_space.hpp"
-#include "runner/job/task.hpp"
 #include "runner/plan/column_values.hpp"
+#include "runner/plan/task.hpp"
 #include "runner/plan/task_list.hpp"
+#include "runner/specs/task_spec.hpp"
+#include "runner/sweep/sweep_space.hpp"
 
 namespace rodsweep {
 

@@ -1,9 +1,9 @@
 // The identity of a task across plans.
 #include <fmt/format.h>
 
-#include "runner/job/option_label.hpp"
-#include "runner/job/task_spec.hpp"
+#include "runner/keys/option_label.hpp"
 #include "runner/plan/plan.hpp"
+#include "runner/specs/solve_keys.hpp"
 
 namespace rodsweep {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "runner/job/job_keys.hpp"
-#include "runner/job/option_label.hpp"
+#include "runner/keys/option_label.hpp"
+#include "runner/keys/tables.hpp"
 #include "runner/plan/plan.hpp"
 
 namespace rodsweep {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "runner/job/scene_keys.hpp"
+#include "runner/specs/scene_keys.hpp"
 
 namespace rodsweep {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runner/job/job.hpp"
-#include "runner/job/sweep_space.hpp"
+#include "runner/sweep/sweep_space.hpp"
 #include "solver/scene/scenes.hpp"
 
 namespace rodsweep {

@@ -11,7 +11,7 @@
 #include <map>
 #include <vector>
 
-#include "runner/job/task.hpp"
+#include "runner/plan/task.hpp"
 
 namespace rodsweep {
 

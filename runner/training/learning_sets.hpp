@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runner/dataset/dataset_reader.hpp"
-#include "runner/job/training_job.hpp"
+#include "runner/specs/training_job.hpp"
 
 namespace rodsweep {
 

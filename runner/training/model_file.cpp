@@ -6,7 +6,7 @@
 
 #include "runner/file/file_reading.hpp"
 #include "runner/file/hdf5.hpp"
-#include "runner/job/training_job.hpp"
+#include "runner/specs/training_job.hpp"
 #include "runner/text/checksum.hpp"
 #include "runner/training/model_layout.hpp"
 

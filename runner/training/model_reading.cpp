@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "runner/file/file_reading.hpp"
-#include "runner/job/job_reader.hpp"
-#include "runner/job/strict_json.hpp"
-#include "runner/job/training_job.hpp"
+#include "runner/keys/job_reader.hpp"
+#include "runner/specs/training_job.hpp"
+#include "runner/text/strict_json.hpp"
 #include "runner/training/model_file.hpp"
 #include "runner/training/model_layout.hpp"
 

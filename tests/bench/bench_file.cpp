@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <numeric>
 
-#include "runner/experiment/evaluation.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/results_file.hpp"
+#include "runner/measure/evaluation.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/text.hpp"
 #include "solver/cg/petsc_session.hpp"

@@ -153,7 +153,7 @@ class Unconverged(Case):
 
 
 class Validate(Case):
-    """For missing files and JSON see tests/runner/job/test_input_files.cpp and test_job_refusals.cpp."""
+    """For missing files and JSON see tests/runner/inputs/test_input_files.cpp and test_job_refusals.cpp."""
 
     def validated(self, *words):
         said = rodsweep("validate", *words)

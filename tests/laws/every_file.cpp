@@ -2,7 +2,7 @@
 // others.
 #include <catch2/catch.hpp>
 
-#include "runner/experiment/inputs.hpp"
+#include "runner/measure/inputs.hpp"
 #include "tests/laws/key_places.hpp"
 #include "tests/runner/data_set_examples.hpp"
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "runner/experiment/guesses.hpp"
-#include "runner/job/guess_keys.hpp"
+#include "runner/measure/guesses.hpp"
 #include "runner/plan/plan.hpp"
+#include "runner/specs/guess_keys.hpp"
 #include "solver/cg/cg_solver.hpp"
 #include "solver/linear/rounding_level.hpp"
 #include "tests/runner/data_set_examples.hpp"
@@ -236,7 +236,7 @@ void append(std::vector<std::int64_t>& to, const std::vector<std::int64_t>& sums
 Counts counts_of(const Json& job, bool backwards = false) {
   const Plan plan = plan_of(job);
   Counts counts;
-  const std::vector<std::string> labels = guess_labels(plan.job());
+  const std::vector<std::string> labels = plan.guess_labels();
   for (std::int64_t i = 0; i < plan.size(); ++i) {
     const std::int64_t index = backwards ? plan.size() - 1 - i : i;
     const TaskRecord record = record_of(plan, index);

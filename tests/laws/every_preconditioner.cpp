@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "runner/job/task_spec.hpp"
 #include "runner/plan/plan.hpp"
+#include "runner/specs/solve_keys.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep::test_every_preconditioner {

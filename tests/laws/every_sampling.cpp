@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "runner/job/job_keys.hpp"
-#include "runner/job/sobol.hpp"
+#include "runner/keys/tables.hpp"
+#include "runner/sweep/sobol.hpp"
 #include "solver/numbers/counter_random.hpp"
 #include "tests/laws/key_places.hpp"
 

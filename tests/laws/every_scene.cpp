@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "runner/job/scene_keys.hpp"
 #include "runner/plan/scene_spec.hpp"
+#include "runner/specs/scene_keys.hpp"
 #include "tests/runner/job_folder.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/turned.hpp"

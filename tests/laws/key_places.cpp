@@ -5,9 +5,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "runner/experiment/inputs.hpp"
-#include "runner/job/guess_keys.hpp"
-#include "runner/job/job_keys.hpp"
+#include "runner/keys/tables.hpp"
+#include "runner/measure/inputs.hpp"
+#include "runner/specs/guess_keys.hpp"
 #include "runner/text/key_path.hpp"
 #include "tests/runner/data_set_examples.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "runner/experiment/evaluation.hpp"
+#include "runner/measure/evaluation.hpp"
 
 namespace rodsweep {
 

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <vector>
 
-#include "runner/job/sweep_space.hpp"
+#include "runner/sweep/sweep_space.hpp"
 
 namespace rodsweep {
 namespace {

@@ -32,7 +32,7 @@ Json toy_train_job() {
 Toy::Toy(const Json& values, const Json& rods) {
   make_data_set(folder / "data.h5", rods);
   job = parse_job(values.dump(), folder / "job.json");
-  training = training_job(job);
+  training = training_job(job.values, job.path);
   const LearningSets sets(training, job);
   data = training_data(training, sets, 2);
   simulations = ratio_simulations(training, sets, 0, 1);

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "runner/experiment/factor_check.hpp"
+#include "runner/measure/factor_check.hpp"
 #include "runner/plan/scene_spec.hpp"
 #include "tests/runner/job_folder.hpp"
 #include "tests/runner/refused_jobs.hpp"

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runner/job/guess_keys.hpp"
-#include "runner/job/job_keys.hpp"
+#include "runner/keys/tables.hpp"
+#include "runner/specs/guess_keys.hpp"
 #include "runner/text/nearest.hpp"
 #include "solver/numbers/counter_random.hpp"
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "runner/experiment/factor_check.hpp"
-#include "runner/experiment/guess_check.hpp"
+#include "runner/measure/factor_check.hpp"
+#include "runner/measure/guess_check.hpp"
 #include "tests/runner/refused_jobs.hpp"
 
 using namespace rodsweep;

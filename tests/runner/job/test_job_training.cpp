@@ -1,7 +1,7 @@
 // Jobs of kind "train": keys, their meaning, refusals.
 #include <catch2/catch.hpp>
 
-#include "runner/job/training_job.hpp"
+#include "runner/specs/training_job.hpp"
 #include "tests/runner/refused_jobs.hpp"
 
 using namespace rodsweep;
@@ -10,7 +10,8 @@ namespace test_job_training {
 
 using Paths = std::vector<std::filesystem::path>;
 
-TrainingJob training_of(const Json& job) { return training_job(job_of(job)); }
+TrainingJob training_of(const Job& job) { return training_job(job.values, job.path); }
+TrainingJob training_of(const Json& job) { return training_of(job_of(job)); }
 
 /// The training job with the JSON text `value` at `pointer`.
 Json training_with(const std::string& pointer, const std::string& value) {
@@ -37,7 +38,7 @@ TEST_CASE("the least that a training says is where its data are") {
 
 TEST_CASE("data are looked for beside the job") {
   const auto paths = [](const char* data) {
-    return training_job(parse_job(with("/data", data, train_job()).dump(), "jobs/train.json")).data;
+    return training_of(parse_job(with("/data", data, train_job()).dump(), "jobs/train.json")).data;
   };
   CHECK(paths(R"("../results/data.h5")") == Paths{"results/data.h5"});
   CHECK(paths(R"("/data.h5")") == Paths{"/data.h5"});

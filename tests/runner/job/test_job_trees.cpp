@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "runner/experiment/guess_check.hpp"
-#include "runner/job/skeleton_file.hpp"
+#include "runner/inputs/skeleton_file.hpp"
+#include "runner/measure/guess_check.hpp"
 #include "tests/runner/job_folder.hpp"
 #include "tests/runner/refused_jobs.hpp"
 

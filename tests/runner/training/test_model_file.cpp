@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "runner/file/hdf5.hpp"
-#include "runner/job/training_job.hpp"
+#include "runner/specs/training_job.hpp"
 #include "runner/training/model_file.hpp"
 #include "tests/network/models.hpp"
 #include "tests/runner/file_examples.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "runner/dataset/dataset_reader.hpp"
-#include "runner/experiment/guesses.hpp"
+#include "runner/measure/guesses.hpp"
 #include "runner/training/validation_ratio.hpp"
 #include "tests/runner/data_set_examples.hpp"
 

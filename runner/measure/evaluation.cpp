@@ -1,0 +1,110 @@
+#include "runner/measure/evaluation.hpp"
+
+#include <exception>
+#include <memory>
+#include <new>
+#include <optional>
+
+#include "runner/dataset/stored_systems.hpp"
+#include "runner/measure/host_memory.hpp"
+#include "runner/measure/measured_solve.hpp"
+#include "runner/measure/projections.hpp"
+#include "runner/measure/simulation_log.hpp"
+#include "solver/linear/interruption.hpp"
+#include "solver/step/stopwatch.hpp"
+#include "solver/step/time_step.hpp"
+
+namespace rodsweep {
+namespace {
+
+class ObservedSolve : public LinearSolve {
+ public:
+  ObservedSolve(const Scene& scene, LinearSolve& solve, const ObserveSystem& observe)
+      : scene_(scene), solve_(solve), observe_(observe) {}
+
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                     VectorX& delta_lambda) override {
+    const SolveOutcome outcome = solve_.solve(system, at, assemble_s, delta_lambda);
+    observe_(scene_.rods[static_cast<std::size_t>(at.rod)], system, at, delta_lambda);
+    return outcome;
+  }
+
+ private:
+  const Scene& scene_;
+  LinearSolve& solve_;
+  const ObserveSystem& observe_;
+};
+
+/// Builds the scene and its systems and runs the steps; sets outcome and message. Returns false if abandoned between
+/// steps. If interrupted elsewhere, throws InterruptedComputation and sets no ratios: the last system may lack guesses.
+bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop, TimeSource now,
+              const Stopwatch& watch, const ObserveSystem& observe) {
+  const auto is_late = [&] { return spec.time_limit_s > 0 && watch.seconds() > spec.time_limit_s; };
+  const Interruptible interruptible([&] { return (stop && stop()) || is_late(); }, now);
+  Scene scene = build_scene(spec.scene);
+  MeasuredSolve solve(scene, spec, record);
+  std::optional<StoringSolve> storing;
+  if (const int iterations = spec.output.stored_iterations(spec.time.newton_iterations); iterations > 0)
+    storing.emplace(scene, iterations, solve, record);
+  LinearSolve* outermost = storing ? static_cast<LinearSolve*>(&*storing) : &solve;
+  std::optional<ObservedSolve> observed;
+  if (observe) outermost = &observed.emplace(scene, *outermost, observe);
+  const std::unique_ptr<Projection> projection = make_projection(scene, spec, record, *outermost);
+  TimeStepper stepper(scene, step_settings(spec.time));
+
+  SimulationLog simulation(task, spec, record, scene);
+  for (int step = 0; step < spec.time.steps; ++step) {
+    if (stop && stop()) return false;
+    if (simulation.out_of_time(watch.seconds())) break;
+    solve.take_elapsed_s();
+    const Stopwatch step_watch;
+    const StepReport report = stepper.step(*projection);
+    const auto row = static_cast<std::size_t>(step);
+    record.timing.rest_s[row] = static_cast<float>(step_watch.seconds() - solve.take_elapsed_s());
+    const SolveEffort effort = solve.take_effort();
+    record.timing.solve_s[row] = static_cast<float>(effort.seconds);
+    record.steps.cg_iterations[row] = effort.iterations;
+    record.steps.products[row] = effort.products;
+    if (!simulation.finish_step(step, scene, report)) break;
+  }
+  solve.finish();
+  return true;
+}
+
+}  // namespace
+
+static bool run_task(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
+                     const StopRequested& stop, const ObserveSystem& observe) {
+  const Stopwatch watch(now);
+  bool finished = true;
+  try {
+    finished = simulate(task, spec, record, stop, now, watch, observe);
+  } catch (const InterruptedComputation& interrupted) {
+    finished = !(stop && stop());
+    if (finished) end_late(spec, record, interrupted.where());
+  } catch (const std::bad_alloc&) {
+    record.outcome = TaskOutcome::error;
+    record.message = out_of_memory_text();
+  } catch (const std::exception& error) {
+    record.outcome = TaskOutcome::error;
+    record.message = error.what();
+  }
+  record.timing.elapsed_s[0] = watch.seconds();
+  return finished;
+}
+
+bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
+  return run_task(std::chrono::steady_clock::now, task, spec, record, stop, nullptr);
+}
+
+bool evaluate_by_clock(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
+                       const StopRequested& stop) {
+  return run_task(now, task, spec, record, stop, nullptr);
+}
+
+bool evaluate_observed(const ObserveSystem& observe, const Task& task, const TaskSpec& spec, TaskRecord& record,
+                       const StopRequested& stop) {
+  return run_task(std::chrono::steady_clock::now, task, spec, record, stop, observe);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,206 @@
+#include "runner/measure/simulation_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/measure/projections.hpp"
+#include "solver/numbers/larger_or_nan.hpp"
+#include "solver/numbers/narrow.hpp"
+#include "solver/rod/state_rows.hpp"
+#include "solver/step/observables.hpp"
+
+namespace rodsweep {
+namespace {
+
+// Upper bounds of the joint gap, in joint lengths.
+constexpr double whole_rod = 1, meaningless_gap = 100;
+
+TaskOutcome outcome_of(SolveOutcome solve) {
+  switch (solve) {
+    case SolveOutcome::indefinite: return TaskOutcome::indefinite;
+    case SolveOutcome::not_a_number: return TaskOutcome::not_a_number;
+    case SolveOutcome::iteration_limit: return TaskOutcome::iteration_limit;
+    case SolveOutcome::diverged: return TaskOutcome::diverged;
+    default: return TaskOutcome::ok;
+  }
+}
+
+/// Logs the constant properties of the segments in a trajectory's frames.
+void log_segments(const Scene& scene, TaskRecord& record) {
+  std::size_t row = 0;
+  for (std::size_t rod = 0; rod < scene.rods.size(); ++rod) {
+    for (const Segment& segment : scene.rods[rod].segments) {
+      record.trajectories.segments.length_m[row] = segment.length_m;
+      record.trajectories.segments.radius_m[row] = segment.radius_m;
+      record.trajectories.segments.rod[row] = narrow<std::int16_t>(static_cast<std::int64_t>(rod));
+      record.trajectories.segments.is_static[row] = segment.is_static ? 1 : 0;
+      ++row;
+    }
+  }
+}
+
+/// The turns in a step [rad] up to which motions were found right: of a body whose spin term is explicit, and of a rod
+/// that rolls.
+constexpr double most_tumbled = 1, most_rolled = 7;
+
+}  // namespace
+
+void end_late(const TaskSpec& spec, TaskRecord& record, const std::string& where) {
+  int& step = record.tasks.steps_done[0];
+  step = std::max(step, 0);  // the negative fill value until the scene is built
+  record.outcome = TaskOutcome::timed_out;
+  record.message =
+      fmt::format("step {}: the time limit of {:g} s has passed (task_time_limit_s or --task-time-limit){}{}", step,
+                  spec.time_limit_s, where.empty() ? "" : " in ", where);
+}
+
+SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene)
+    : task_(task), spec_(spec), record_(record) {
+  for (const Rod& rod : scene.rods) {
+    initial_length_ += rod_length(rod);
+    observed_.push_back({Linearization(rod), MomentumBalance(rod), {}});
+    linearize(rod, observed_.back().at);
+  }
+  record_.outcome = TaskOutcome::ok;
+  record_.tasks.steps_done[0] = 0;
+  if (spec_.output.trajectory_every > 0) {
+    log_segments(scene, record_);
+    log_frame(0, scene);
+  }
+}
+
+/// Writes the observables of a finished step to row `step` of /steps.
+void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepReport& report) {
+  double length = 0, gap = 0, residual = 0, imbalance = 0, kinetic = 0, potential = 0, elastic = 0, open = 0;
+  Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
+  for (std::size_t r = 0; r < scene.rods.size(); ++r) {
+    const Rod& rod = scene.rods[r];
+    auto& [at, balance, before] = observed_[r];
+    before = at.constraint;
+    linearize(rod, at);
+    balance_momentum(rod, at, balance);
+    length += rod_length(rod);
+    gap = std::max(gap, joint_gap(rod));
+    residual = larger_or_nan(residual, newton_residual(rod, at, rod.constraint_dt));
+    imbalance = larger_or_nan(imbalance, balance.residual);
+    kinetic += kinetic_energy(rod);
+    potential += gravitational_energy(rod, scene.gravity_at(scene.time_s));
+    elastic += elastic_energy(rod, at);
+    open += gap_energy(rod, at);
+    momentum += linear_momentum(rod);
+    spin += angular_momentum(rod);
+  }
+  record_.steps.time_s[step] = scene.time_s;
+  record_.steps.length_drift[step] = length / initial_length_ - 1;
+  record_.steps.joint_gap[step] = gap;
+  record_.steps.kinetic_energy_j[step] = kinetic;
+  record_.steps.potential_energy_j[step] = potential;
+  record_.steps.elastic_energy_j[step] = elastic;
+  record_.steps.gap_energy_j[step] = open;
+  for (std::size_t i = 0; i < 3; ++i) {
+    record_.steps.momentum_kg_m_s(step, i) = momentum[static_cast<Eigen::Index>(i)];
+    record_.steps.angular_momentum_kg_m2_s(step, i) = spin[static_cast<Eigen::Index>(i)];
+  }
+  record_.steps.newton_iterations[step] = static_cast<std::int16_t>(report.newton_iterations);
+  record_.steps.newton_residual[step] = residual;
+  record_.steps.momentum_residual[step] = imbalance;
+  record_.tasks.momentum_residual[0] = std::fmax(record_.tasks.momentum_residual[0], imbalance);
+  if (!scene.contact) return;
+  record_.steps.contacts[step] = report.contacts;
+  record_.steps.penetration[step] = report.penetration;
+  record_.steps.contact_residual[step] = report.contact_residual;
+  record_.tasks.penetration[0] = std::fmax(record_.tasks.penetration[0], report.penetration);
+}
+
+bool SimulationLog::out_of_time(double elapsed_s) {
+  if (spec_.time_limit_s <= 0 || elapsed_s <= spec_.time_limit_s) return false;
+  end_late(spec_, record_);
+  return true;
+}
+
+bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& report) {
+  if (report.outcome == SolveOutcome::iteration_limit && record_.outcome == TaskOutcome::ok)
+    fail(TaskOutcome::iteration_limit, step, "a solve that advances the rod hit its iteration limit (and others may)");
+  else if (report.outcome != SolveOutcome::converged && report.outcome != SolveOutcome::iteration_limit) {
+    fail(outcome_of(report.outcome), step,
+         projection_failed(spec_.solve.method) + std::string(to_string(report.outcome)));
+    return false;
+  }
+  const auto row = static_cast<std::size_t>(step);
+  log_step(row, scene, report);
+  record_.tasks.steps_done[0] = step + 1;
+  const int every = spec_.output.trajectory_every;
+  if (every > 0 && (step + 1) % every == 0) log_frame(static_cast<std::size_t>((step + 1) / every), scene);
+
+  if (!std::all_of(scene.rods.begin(), scene.rods.end(), [](const Rod& rod) { return is_finite(rod); })) {
+    fail(TaskOutcome::not_a_number, step, "the rod's state is not finite");
+    return false;
+  }
+  if (const double gap = record_.steps.joint_gap[row]; gap > whole_rod) {
+    fail(gap > meaningless_gap ? TaskOutcome::diverged : TaskOutcome::torn, step,
+         "a joint is open by " + std::to_string(gap) + " joint lengths");
+    return false;
+  }
+  if (const std::string joint = slipped_joint(); !joint.empty()) {
+    fail(TaskOutcome::torn, step, joint + " turned past half a turn and lost its bending and twist: use more segments");
+    return false;
+  }
+  note_turns(scene);
+  if (step + 1 == task_.steps) warn_of_turns();
+  return true;
+}
+
+/// A joint whose rotation from rest passed half a turn in the last step, where the torque changes its sign; "" if none.
+/// With d = (w, C / 2), w >= 0, before and after: the shorter way between them is the one through half a turn if the
+/// product of the two is negative.
+std::string SimulationLog::slipped_joint() const {
+  const auto w = [](const Vector3& c) { return std::sqrt(std::max(0.0, 1 - c.squaredNorm() / 4)); };
+  for (std::size_t r = 0; r < observed_.size(); ++r) {
+    const VectorX &after = observed_[r].at.constraint, &before = observed_[r].before;
+    for (Eigen::Index row = 3; row < after.size(); row += 6) {
+      const Vector3 c = after.segment<3>(row), old = before.segment<3>(row);
+      if (w(c) * w(old) + c.dot(old) / 4 < 0) return fmt::format("joint {} of rod {}", row / 6, r);
+    }
+  }
+  return "";
+}
+
+void SimulationLog::note_turns(const Scene& scene) {
+  for (const Rod& rod : scene.rods)
+    for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+      const Vector3 turn = spec_.time.step_s * rod.angular_velocity[s], axis = rod.orientation[s] * Vector3::UnitZ();
+      tumbled_ = std::max(tumbled_, turn.cross(axis).norm());
+      if (scene.contact) rolled_ = std::max(rolled_, std::abs(turn.dot(axis)));
+    }
+}
+
+void SimulationLog::warn_of_turns() {
+  const double excess = std::max(tumbled_ / most_tumbled, rolled_ / most_rolled);
+  if (record_.outcome != TaskOutcome::ok || !(excess > 1)) return;
+  const bool rolls = rolled_ / most_rolled == excess;
+  record_.message =
+      fmt::format("a segment turned by {:.2g} rad {} in a step; above {:g} its motion is wrong: use a step_s of {:.1g}",
+                  rolls ? rolled_ : tumbled_, rolls ? "about its axis, in contact" : "across its axis",
+                  rolls ? most_rolled : most_tumbled, spec_.time.step_s / excess);
+}
+
+void SimulationLog::fail(TaskOutcome outcome, int step, const std::string& why) {
+  record_.outcome = outcome;
+  record_.message = "step " + std::to_string(step) + ": " + why;
+}
+
+void SimulationLog::log_frame(std::size_t frame, const Scene& scene) {
+  const std::size_t first = frame * static_cast<std::size_t>(task_.segments);
+  record_.trajectories.first_row[frame] = task_.rows[Rows::frame_segment].first + static_cast<std::int64_t>(first);
+  record_.trajectories.time_s[frame] = scene.time_s;
+  std::size_t row = first;
+  for (const Rod& rod : scene.rods) {
+    store(rod.position, record_.trajectories.position_m.row(row));
+    store(rod.orientation, record_.trajectories.orientation.row(row));
+    row += rod.segments.size();
+  }
+}
+
+}  // namespace rodsweep

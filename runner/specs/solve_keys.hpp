@@ -1,0 +1,26 @@
+// The keys of `time` and `solve` in a job, and the specs constructed from them at a parameter point. Single values
+// are already validated; conditions on several values are checked here. Throws JobError.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "runner/inputs/input_file.hpp"
+#include "runner/keys/key.hpp"
+#include "runner/keys/point.hpp"
+#include "runner/specs/task_spec.hpp"
+
+namespace rodsweep {
+
+Key time_key();
+Key solve_key();
+
+TimeSpec time_spec(const Point& point, const JobFiles& job);
+SolveSpec solve_spec(const Point& point, const JobFiles& job);  ///< default: the direct solve (data sets)
+Evaluation evaluation(const Point& point);                      ///< default: paired
+OutputSpec output_spec(const nlohmann::ordered_json& record);
+
+/// Throws JobError if the solve method conflicts with other settings, such as a paired evaluation.
+void check_method(const Point& point, const std::vector<GuessSpec>& guesses, const JobFiles& job);
+
+}  // namespace rodsweep

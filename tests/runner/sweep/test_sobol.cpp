@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "runner/sweep/sobol.hpp"
+#include "solver/numbers/counter_random.hpp"
+#include "tests/runner/job_examples.hpp"
+
+using namespace rodsweep;
+
+namespace test_sobol {
+
+std::vector<double> drawn(const Plan& plan, const std::string& path) {
+  for (const ParameterColumn& column : plan.parameters()) {
+    if (column.path == path) return std::get<ColumnValues<double>>(column.values).all();
+  }
+  FAIL("no column " + path);
+  return {};
+}
+
+/// Two random keys in [0, 1].
+Json job_with(const char* sampling, int samples, int seed = 0) {
+  Json job = with("/sampling", fmt::format("\"{}\"", sampling));
+  job["scene"]["initial_angle_deg"] = uniform(0, 1);
+  job["scene"]["damping_per_s"] = uniform(0, 1);
+  job["samples"] = samples;
+  job["seed"] = seed;
+  return job;
+}
+
+TEST_CASE("without scrambling the points are Sobol's, with the direction numbers of Joe and Kuo") {
+  // new-joe-kuo-6.21201, points 0 to 7, first four dimensions.
+  const double known[8][4] = {{0, 0, 0, 0},
+                              {0.5, 0.5, 0.5, 0.5},
+                              {0.75, 0.25, 0.25, 0.25},
+                              {0.25, 0.75, 0.75, 0.75},
+                              {0.375, 0.375, 0.625, 0.875},
+                              {0.875, 0.875, 0.125, 0.375},
+                              {0.625, 0.125, 0.875, 0.625},
+                              {0.125, 0.625, 0.375, 0.125}};
+  for (int d = 0; d < 4; ++d) {
+    const Directions directions = sobol_directions(d);
+    for (std::size_t i = 0; i < 8; ++i) CHECK(digits(directions, i) * 0x1p-32 == known[i][d]);
+  }
+}
+
+TEST_CASE("scrambling keeps one point in each of 2^k equal intervals, and its digits depend on those before them") {
+  constexpr std::size_t points = 256;
+  for (std::uint32_t seed : {0u, 1u, 0x9e3779b9u}) {
+    std::vector<int> hits(points, 0);
+    const Directions directions = random_directions(seed, 3);
+    for (std::size_t i = 0; i < points; ++i) ++hits[scrambled(digits(directions, i), seed) >> 24];
+    CHECK(std::count(hits.begin(), hits.end(), 1) == points);
+  }
+  CHECK(scrambled(0x70000000u, 5) >> 28 == scrambled(0x7fffffffu, 5) >> 28);
+  int alike = 0;  // whether the second digits of both halves are flipped alike, as by a shift
+  for (std::uint32_t seed = 0; seed < 64; ++seed) {
+    const auto mixed = static_cast<std::uint32_t>(random_bits(seed, 0, 0));
+    alike += ((scrambled(0, mixed) ^ scrambled(0x80000000u, mixed)) & 0x40000000u) == 0;
+  }
+  CHECK(alike > 20);
+  CHECK(alike < 44);
+}
+
+/// The root mean square error of means of 64 samples, over 300 seeds; without `is_even`: of independent samples.
+template <class Function>
+double error_of_means(const std::array<std::optional<int>, 3>& dimensions, bool is_even, const Function& f) {
+  constexpr std::uint64_t seeds = 300, samples = 64;
+  std::vector<double> means;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    std::vector<EvenSequence> sequences;
+    for (std::uint64_t key = 0; key < 3; ++key) sequences.emplace_back(dimensions[key], seed, key);
+    double sum = 0;
+    for (std::uint64_t i = 0; i < samples; ++i) {
+      std::array<double, 3> u{};
+      for (std::uint64_t key = 0; key < 3; ++key) u[key] = is_even ? sequences[key].unit(i) : random_unit(seed, i, key);
+      sum += f(u);
+    }
+    means.push_back(sum / samples);
+  }
+  const double expected = f.mean();
+  double squares = 0;
+  for (const double mean : means) squares += (mean - expected) * (mean - expected) / seeds;
+  return std::sqrt(squares);
+}
+
+struct Sum {
+  double operator()(const std::array<double, 3>& u) const { return std::exp(u[0]) + u[1] * u[1] + std::sqrt(u[2]); }
+  static double mean() { return std::exp(1) - 1 + 1.0 / 3 + 2.0 / 3; }
+};
+struct Product {
+  double operator()(const std::array<double, 3>& u) const {
+    return std::exp(1.5 * u[0]) * std::exp(-1.2 * u[1]) * (1 + 0.5 * std::cos(1.5 * u[2]));
+  }
+  static double mean() {
+    return (std::exp(1.5) - 1) / 1.5 * (1 - std::exp(-1.2)) / 1.2 * (1 + 0.5 * std::sin(1.5) / 1.5);
+  }
+};
+
+TEST_CASE("means of even samples are as exact as docs/jobs.md says") {
+  const auto gain = [](const auto& f, std::optional<int> a, std::optional<int> b, std::optional<int> c) {
+    return error_of_means({a, b, c}, false, f) / error_of_means({a, b, c}, true, f);
+  };
+  CHECK(gain(Sum(), 0, 1, 2) > 40);
+  CHECK(gain(Sum(), {}, {}, {}) > 40);
+  CHECK(gain(Product(), 0, 1, 2) > 20);
+  CHECK(gain(Product(), 0, 1, 7) > 6);
+  CHECK(gain(Product(), 4, 5, 6) > 10);
+  CHECK(gain(Product(), {}, {}, {}) > 2.5);
+}
+
+TEST_CASE("sobol draws depend on seed, sample and key path, not on the number of samples or the grid") {
+  const auto few = drawn(plan_of(job_with("sobol", 5)), "scene.damping_per_s");
+  const auto many = drawn(plan_of(job_with("sobol", 50)), "scene.damping_per_s");
+  CHECK(std::equal(few.begin(), few.end(), many.begin()));
+  CHECK(drawn(plan_of(job_with("sobol", 5, 1)), "scene.damping_per_s") != few);
+  CHECK(drawn(plan_of(job_with("sobol", 5)), "scene.initial_angle_deg") != few);
+
+  Json job = job_with("sobol", 3);
+  job["scene"]["segments"] = grid({4, 5});
+  const auto both = drawn(plan_of(job), "scene.damping_per_s");
+  REQUIRE(both.size() == 6);
+  for (std::size_t k = 0; k < 3; ++k) {
+    CHECK(both[k] == few[k]);
+    CHECK(both[k + 3] == few[k]);
+  }
+}
+
+TEST_CASE("logarithmic and whole draws and components of vectors are even too, pairs of usual keys also together") {
+  Json job = job_with("sobol", 64);
+  job["scene"]["youngs_modulus_pa"] = {{"log_uniform", {1e4, 1e6}}};
+  job["scene"]["segments"] = {{"integer", {3, 6}}};
+  job["scene"]["length_m"] = uniform(1, 2);
+  job["scene"]["tip_force_n"] = {0, uniform(0, 1), 0};
+  const Plan plan = plan_of(job);
+  const auto moduli = drawn(plan, "scene.youngs_modulus_pa"), lengths = drawn(plan, "scene.length_m");
+  const auto forces = drawn(plan, "scene.tip_force_n");
+  int of_three = 0, soft = 0, low = 0, short_and_soft = 0;
+  for (std::size_t k = 0; k < 64; ++k) {
+    of_three += plan.task(static_cast<std::int64_t>(k)).segments == 3;
+    soft += moduli[k] < 1e5;
+    low += forces[3 * k + 1] < 0.5;
+    short_and_soft += lengths[k] < 1.5 && moduli[k] < 1e5;
+  }
+  CHECK(of_three == 16);
+  CHECK(soft == 32);
+  CHECK(low == 32);
+  CHECK(short_and_soft == 16);
+}
+
+TEST_CASE("a sampling that is misspelt is refused") {
+  CHECK(refusal(with("/sampling", "\"sobel\"")) ==
+        "job.json: sampling: \"sobel\" is not allowed; must be one of \"random\", \"sobol\"; did you mean \"sobol\"?");
+}
+
+}  // namespace test_sobol
