@@ -51,7 +51,7 @@ struct Fallen {
   std::vector<Box> boxes;
   std::vector<double> margins;
 
-  explicit Fallen(int segments) : scene(heap(segments)), projection(scene, *scene.contact, 0.01), bodies(scene) {
+  explicit Fallen(int segments) : scene(heap(segments)), projection(scene, *scene.contact, 0.01, false), bodies(scene) {
     projection.start_step(0.01);
     for (Rod& rod : scene.rods) rod.constraint_dt = 0.01;
     std::vector<CapsuleAxis> axes;
