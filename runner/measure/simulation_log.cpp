@@ -144,11 +144,15 @@ bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& 
     return false;
   }
   if (const std::string joint = slipped_joint(); !joint.empty()) {
-    fail(TaskOutcome::torn, step, joint + " turned past half a turn and lost its bending and twist: use more segments");
-    return false;
+    slipped_ = true;
+    if (!scene.clamps.empty()) {  // a prescribed turn is lost
+      fail(TaskOutcome::torn, step,
+           joint + " turned past half a turn, where its torque changes sign: use more segments");
+      return false;
+    }
   }
   note_turns(scene);
-  if (step + 1 == task_.steps) warn_of_turns();
+  if (step + 1 == task_.steps && record_.outcome == TaskOutcome::ok) record_.message = warnings();
   return true;
 }
 
@@ -176,14 +180,16 @@ void SimulationLog::note_turns(const Scene& scene) {
     }
 }
 
-void SimulationLog::warn_of_turns() {
+std::string SimulationLog::warnings() const {
+  std::string text;
+  if (slipped_) text = "a joint turned past half a turn, where its torque changes sign: use more segments";
   const double excess = std::max(tumbled_ / most_tumbled, rolled_ / most_rolled);
-  if (record_.outcome != TaskOutcome::ok || !(excess > 1)) return;
+  if (!(excess > 1)) return text;
   const bool rolls = rolled_ / most_rolled == excess;
-  record_.message =
-      fmt::format("a segment turned by {:.2g} rad {} in a step; above {:g} its motion is wrong: use a step_s of {:.1g}",
-                  rolls ? rolled_ : tumbled_, rolls ? "about its axis, in contact" : "across its axis",
-                  rolls ? most_rolled : most_tumbled, spec_.time.step_s / excess);
+  return fmt::format(
+      "{}{}a segment turned by {:.2g} rad {} in a step; above {:g} its motion is wrong: use a step_s of {:.1g}", text,
+      text.empty() ? "" : "; ", rolls ? rolled_ : tumbled_, rolls ? "about its axis, in contact" : "across its axis",
+      rolls ? most_rolled : most_tumbled, spec_.time.step_s / excess);
 }
 
 void SimulationLog::fail(TaskOutcome outcome, int step, const std::string& why) {

@@ -38,7 +38,7 @@ class SimulationLog {
   void log_step(std::size_t step, const Scene& scene, const StepReport& report);
   std::string slipped_joint() const;
   void note_turns(const Scene& scene);
-  void warn_of_turns();
+  std::string warnings() const;  ///< of a task that ends well
   void fail(TaskOutcome outcome, int step, const std::string& why);
   void log_frame(std::size_t frame, const Scene& scene);
 
@@ -47,6 +47,7 @@ class SimulationLog {
   TaskRecord& record_;
   std::vector<Observed> observed_;  ///< by rod
   double initial_length_ = 0;
+  bool slipped_ = false;             ///< a joint turned past half a turn
   double tumbled_ = 0, rolled_ = 0;  ///< the most that a segment turned across and about its axis in a step [rad]
 };
 

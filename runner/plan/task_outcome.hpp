@@ -17,7 +17,7 @@ enum class TaskOutcome : std::int8_t {
   iteration_limit = 5,  ///< the solve that advances the trajectory reached its iteration limit
   timed_out = 6,        ///< the task exceeded its time limit
   error = 7,            ///< an exception; its text is the task's message
-  torn = 8,             ///< a joint opened by more than its length or turned past half a turn
+  torn = 8,             ///< a joint opened by more than its length or, while clamps move, turned past half a turn
   crashed = 9,          ///< its worker died while running it, `--max-crashes` times
 };
 inline constexpr int task_outcomes = 10;
