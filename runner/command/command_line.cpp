@@ -9,7 +9,7 @@
 
 #include "runner/file/reader_constants.hpp"
 #include "runner/keys/job_schema.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 #include "runner/text/nearest.hpp"
 
 namespace rodsweep {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "runner/command/exit_codes.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 
 namespace rodsweep {
 

@@ -10,7 +10,7 @@
 #include "runner/file/inspect.hpp"
 #include "runner/file/resume_check.hpp"
 #include "runner/file/stored_plan.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 #include "runner/training/model_file.hpp"
 
 namespace rodsweep {

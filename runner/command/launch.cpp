@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/command/next_line.hpp"
+#include "runner/command/next_command.hpp"
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/file/durable.hpp"
 #include "runner/text/beside_program.hpp"

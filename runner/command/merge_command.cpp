@@ -19,7 +19,7 @@
 #include "runner/file/task_reader.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/job/job_difference.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 
 namespace rodsweep {
 namespace {

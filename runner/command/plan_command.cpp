@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "runner/command/next_line.hpp"
+#include "runner/command/next_command.hpp"
 #include "runner/command/plan_estimate.hpp"
 #include "runner/command/training_plan.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/measure/evaluation.hpp"
 #include "runner/measure/host_memory.hpp"
 #include "runner/measure/inputs.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 #include "runner/text/beside_program.hpp"
 
 namespace rodsweep {

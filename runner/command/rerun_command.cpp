@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <mpi.h>
 
-#include "runner/command/next_line.hpp"
+#include "runner/command/next_command.hpp"
 #include "runner/command/stored_task.hpp"
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/file/results_file.hpp"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "runner/command/next_line.hpp"
+#include "runner/command/next_command.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/measure/inputs.hpp"
 #include "solver/cg/petsc_session.hpp"

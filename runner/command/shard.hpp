@@ -5,9 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
-
-#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 
@@ -21,8 +18,5 @@ std::optional<Shard> shard_of(const std::string& text);
 
 /// The number of tasks in the shard, for a sweep of `tasks` tasks.
 std::int64_t share_of(const Shard& shard, std::int64_t tasks);
-
-/// A flag per task; all set without a shard. Tasks are dealt out by descending cost, so that shards take similar times.
-std::vector<bool> in_shard(const Plan& plan, const std::optional<Shard>& shard);
 
 }  // namespace rodsweep

@@ -10,7 +10,7 @@
 #include "runner/command/file_report.hpp"
 #include "runner/command/training_summary.hpp"
 #include "runner/file/unfinished_file.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 #include "runner/training/model_file.hpp"
 
 namespace rodsweep {

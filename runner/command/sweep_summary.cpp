@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "runner/command/next_line.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/command/next_command.hpp"
+#include "runner/terminal/formats.hpp"
 
 namespace rodsweep {
 
@@ -81,6 +81,27 @@ std::string summary_text(const SweepSummary& summary) {
   else
     text += "\nnext: " + script_line("summary.py", summary.path);
   return text;
+}
+
+std::string ended_text(const SweepSummary& summary, const RunOptions& options, int ranks) {
+  const Dispatch& dispatch = summary.dispatch;
+  RunOptions again = options;
+  again.resume = true;
+  if (dispatch.signal != 0) return stopped_text(dispatch.signal, again, ranks);
+  if (dispatch.left == summary.too_large.tasks)
+    return fmt::format("the remaining tasks do not fit into memory (see above). To continue with more memory: {}",
+                       run_line(again, ranks));
+  if (exit_code(summary) == ExitCode::too_long) {
+    again.time_limit_s.reset();
+    return fmt::format(
+        "no task ended within the time limit of {}. To continue, raise --time-limit (under Slurm sbatch --time), or "
+        "stop "
+        "long tasks with --task-time-limit: {}",
+        duration_text(*options.time_limit_s), run_line(again, ranks));
+  }
+  return fmt::format("{}; finished tasks are kept. To continue: {}",
+                     dispatch.late ? "no time is left for the remaining tasks" : "all workers were lost",
+                     run_line(again, ranks));
 }
 
 }  // namespace rodsweep

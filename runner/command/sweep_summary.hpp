@@ -8,7 +8,7 @@
 #include <string>
 
 #include "runner/command/exit_codes.hpp"
-#include "runner/command/shard.hpp"
+#include "runner/command/run_command.hpp"
 #include "runner/dispatch/master.hpp"
 #include "runner/file/inspect.hpp"
 
@@ -36,5 +36,8 @@ struct SweepSummary {
 /// The exit code of the whole file, not only of this start: a resumed sweep with failed tasks returns tasks_failed.
 ExitCode exit_code(const SweepSummary& summary);
 std::string summary_text(const SweepSummary& summary);
+
+/// Why tasks are left to do, and the command that continues them, on this many ranks.
+std::string ended_text(const SweepSummary& summary, const RunOptions& options, int ranks);
 
 }  // namespace rodsweep

@@ -1,26 +1,41 @@
-// The tasks that a run has to do.
+// The tasks that a run has to do: all tasks of the plan, less those that a row of filters leaves out. The time limit is
+// the master's: it knows what a task takes.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "runner/command/shard.hpp"
 #include "runner/command/sweep_summary.hpp"
-#include "runner/dispatch/pending_task.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/results_file.hpp"
 
 namespace rodsweep {
 
-/// Whether an incomplete task has reached the limit of crashes and is not retried.
-bool has_crashed(const ResultsFile& file, std::int64_t task, int max_crashes);
+/// `tries`: of each task, in earlier runs whose worker crashed. A task that `extension` copies costs little.
+std::vector<PendingTask> all_tasks(const Plan& plan, const std::vector<std::uint8_t>& tries,
+                                   const std::optional<Extension>& extension);
 
-/// The tasks of the shard that are neither done nor crashed.
-std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file,
-                                       const std::optional<Extension>& extension, const std::optional<Shard>& shard,
-                                       int max_crashes);
+/// Whether a task stays in the list.
+using TaskFilter = std::function<bool(const PendingTask&)>;
 
-/// Removes tasks from `pending` whose results exceed `memory` bytes.
-TooLarge leave_out_too_large(const Plan& plan, std::vector<PendingTask>& pending, double memory);
+/// Removes the tasks that do not pass, and returns them.
+std::vector<PendingTask> leave_out(std::vector<PendingTask>& tasks, const TaskFilter& stays);
+
+/// `done`: a flag per task of the plan.
+TaskFilter not_done(const std::vector<std::uint8_t>& done);
+TaskFilter not_crashed(int max_crashes);
+/// Tasks are dealt out by descending cost, so that shards take similar times. All pass without a shard.
+TaskFilter in_shard(const Plan& plan, const std::optional<Shard>& shard);
+/// Whether the results of a task fit into `memory` bytes.
+TaskFilter fits_memory(const Plan& plan, double memory);
+
+/// The number of these tasks, and the one with the largest results.
+TooLarge largest_of(const std::vector<PendingTask>& tasks, const Plan& plan);
+
+/// Stores a task as crashed after its last allowed crash, and returns its message. Called on one rank.
+std::string store_as_crashed(const Task& task, int crashes, const Plan& plan, ResultsFile& file);
 
 }  // namespace rodsweep

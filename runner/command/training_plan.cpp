@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "network/processor/coping_net.hpp"
-#include "runner/command/next_line.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/command/next_command.hpp"
+#include "runner/terminal/formats.hpp"
 #include "runner/training/learning_sets.hpp"
 
 namespace rodsweep {

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "network/training/threads.hpp"
-#include "runner/command/next_line.hpp"
+#include "runner/command/next_command.hpp"
 #include "runner/command/training_summary.hpp"
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/file/file_reading.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "runner/specs/training_job.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 
 namespace rodsweep {
 namespace {

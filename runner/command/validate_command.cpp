@@ -9,7 +9,7 @@
 #include "runner/measure/inputs.hpp"
 #include "runner/plan/plan.hpp"
 #include "runner/specs/training_job.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 #include "runner/training/learning_sets.hpp"
 
 namespace rodsweep {

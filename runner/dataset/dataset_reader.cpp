@@ -11,7 +11,7 @@
 #include "runner/file/resume_check.hpp"
 #include "runner/file/stored_plan.hpp"
 #include "runner/mpi/mpi_session.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 #include "runner/text/checksum.hpp"
 
 namespace rodsweep {

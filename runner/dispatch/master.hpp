@@ -28,11 +28,17 @@
 #include <vector>
 
 #include "runner/dispatch/channel.hpp"
-#include "runner/dispatch/pending_task.hpp"
 #include "runner/terminal/progress.hpp"
 #include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
+
+/// A task not yet done.
+struct PendingTask {
+  std::int64_t index = 0;
+  double cost = 0;
+  int crashes = 0;  ///< workers lost while running it
+};
 
 struct Timeouts {
   using Seconds = std::chrono::duration<double>;

@@ -58,7 +58,7 @@ void check_common_place(const fs::path& path, MPI_Comm comm) {
 
   std::error_code error;
   const bool found = fs::exists(path.parent_path() / name, error);
-  const std::vector<std::string> hosts = distinct_everywhere(found ? "" : host_name(), comm);
+  const std::vector<std::string> hosts = gather_distinct(found ? "" : host_name(), comm);
   if (hosts.empty()) return;
   throw FileError(
       fmt::format("{}: ranks on {} do not find there what rank 0 writes: name a file in a folder that all hosts share "

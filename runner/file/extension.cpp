@@ -42,11 +42,11 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
   const std::hash<std::string> hash;
   for (const Task& task : before_->tasks())
     if (!may_change(reader_->outcome(task.index)))
-      by_trajectory.emplace(hash(before_->identity(task.index).trajectory), task.index);
+      by_trajectory.emplace(hash(before_->inputs(task.index).trajectory), task.index);
   for (const Task& task : plan.tasks()) {
-    const TaskIdentity wanted = plan.identity(task.index);
+    const TaskInputs wanted = plan.inputs(task.index);
     const auto [first, last] = by_trajectory.equal_range(hash(wanted.trajectory));
-    const auto same = std::find_if(first, last, [&](const auto& at) { return before_->identity(at.second) == wanted; });
+    const auto same = std::find_if(first, last, [&](const auto& at) { return before_->inputs(at.second) == wanted; });
     sources_.push_back(same == last ? -1 : same->second);
   }
 }

@@ -1,5 +1,5 @@
 // Reuses results of an earlier file of a smaller job (--extend). Two tasks are equal if all inputs of their results are
-// (TaskIdentity), regardless of their indices. A task of the new plan that the earlier file has is copied. The others
+// (TaskInputs), regardless of their indices. A task of the new plan that the earlier file has is copied. The others
 // are run, also those that timed out or ended in an error before, because a retry may succeed.
 // The earlier file is opened read-only. The checksum of each copied task is verified; a damaged one is run.
 #pragma once

@@ -14,7 +14,7 @@
 #include "runner/file/runs.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/plan/task_outcome.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 
 namespace rodsweep {
 namespace {

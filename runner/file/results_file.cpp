@@ -55,9 +55,7 @@ void on_first_rank(MPI_Comm comm, Work&& work) {
 }
 
 /// The hosts of all ranks without duplicates, in rank order. Collective.
-std::string host_names(MPI_Comm comm) {
-  return fmt::format("{}", fmt::join(distinct_everywhere(host_name(), comm), " "));
-}
+std::string host_names(MPI_Comm comm) { return fmt::format("{}", fmt::join(gather_distinct(host_name(), comm), " ")); }
 
 /// Why a task marked as complete is run again.
 enum Again : std::uint8_t { not_again, failed, damaged };

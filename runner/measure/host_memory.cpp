@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "runner/mpi/control_groups.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 
 namespace rodsweep {
 namespace {

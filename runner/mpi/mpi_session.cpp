@@ -52,7 +52,7 @@ int broadcast(int value, MPI_Comm comm) {
   return value;
 }
 
-double least(double value, MPI_Comm comm) {
+double min_over_ranks(double value, MPI_Comm comm) {
   check_mpi(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MIN, comm), "MPI_Allreduce");
   return value;
 }
@@ -65,7 +65,7 @@ void broadcast(void* data, std::size_t bytes, MPI_Comm comm) {
               "MPI_Bcast");
 }
 
-std::vector<std::string> everywhere(const std::string& text, MPI_Comm comm) {
+std::vector<std::string> gather_to_all(const std::string& text, MPI_Comm comm) {
   constexpr std::size_t bytes = 256;
   int size = 1;
   check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
@@ -77,9 +77,9 @@ std::vector<std::string> everywhere(const std::string& text, MPI_Comm comm) {
   return texts;
 }
 
-std::vector<std::string> distinct_everywhere(const std::string& text, MPI_Comm comm) {
+std::vector<std::string> gather_distinct(const std::string& text, MPI_Comm comm) {
   std::vector<std::string> texts;
-  for (std::string& each : everywhere(text, comm))
+  for (std::string& each : gather_to_all(text, comm))
     if (!each.empty() && std::find(texts.begin(), texts.end(), each) == texts.end()) texts.push_back(std::move(each));
   return texts;
 }

@@ -52,7 +52,7 @@ int broadcast(int value, MPI_Comm comm);
 void broadcast(void* data, std::size_t bytes, MPI_Comm comm);
 
 /// The minimum over all ranks, on every rank.
-double least(double value, MPI_Comm comm);
+double min_over_ranks(double value, MPI_Comm comm);
 
 /// Replaces `values` by rank 0's, and resizes it.
 template <class T>
@@ -65,9 +65,9 @@ void broadcast(std::vector<T>& values, MPI_Comm comm) {
 }
 
 /// All ranks' texts, indexed by rank, on every rank; each is truncated to 255 bytes.
-std::vector<std::string> everywhere(const std::string& text, MPI_Comm comm);
+std::vector<std::string> gather_to_all(const std::string& text, MPI_Comm comm);
 /// The same without empty texts, and each text once.
-std::vector<std::string> distinct_everywhere(const std::string& text, MPI_Comm comm);
+std::vector<std::string> gather_distinct(const std::string& text, MPI_Comm comm);
 
 /// Calls `part` on every rank. If it throws on any rank, all ranks throw a CollectiveError with the message of the
 /// lowest failed rank (and its number, if not 0). So an error is reported once, and no rank waits for a failed one.

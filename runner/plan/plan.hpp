@@ -33,13 +33,13 @@ struct ParameterColumn {
 };
 
 /// All inputs of a task's results, as bytes that are equal in all plans with this task.
-struct TaskIdentity {
+struct TaskInputs {
   std::string trajectory;  ///< in a closed loop including the guess that advances it
   std::vector<std::string>
       guesses;         ///< tried on it, in order: name and parameters without label; empty in a closed loop
   std::string record;  ///< settings of what is recorded
 
-  bool operator==(const TaskIdentity& other) const {
+  bool operator==(const TaskInputs& other) const {
     return trajectory == other.trajectory && guesses == other.guesses && record == other.record;
   }
 };
@@ -63,7 +63,7 @@ class Plan {
   /// Replaces the job's limit in this run; 0: none. Results of tasks within the limit do not depend on it.
   void set_task_time_limit(double seconds) { task_time_limit_s_ = seconds; }
 
-  TaskIdentity identity(std::int64_t index) const;  ///< built on demand
+  TaskInputs inputs(std::int64_t index) const;  ///< built on demand
 
   const std::vector<std::string>& guess_labels() const { return guess_labels_; }  ///< /axes/guess; empty without cg
 

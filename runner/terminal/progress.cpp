@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 
 namespace rodsweep {
 

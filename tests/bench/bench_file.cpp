@@ -13,7 +13,7 @@
 #include "runner/file/results_file.hpp"
 #include "runner/measure/evaluation.hpp"
 #include "runner/mpi/mpi_session.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 #include "solver/cg/petsc_session.hpp"
 
 namespace {
@@ -71,8 +71,8 @@ void bench_extension(const fs::path& path) {
   }
   const auto begin = Clock::now();
   const Extension extension(path, plan);
-  fmt::print("file: {} of {} tasks found in an earlier file in {:.2f} s, peak memory {:.0f} MB\n",
-             extension.copied(), plan.size(), seconds_since(begin), peak_megabytes());
+  fmt::print("file: {} of {} tasks found in an earlier file in {:.2f} s, peak memory {:.0f} MB\n", extension.copied(),
+             plan.size(), seconds_since(begin), peak_megabytes());
 }
 
 /// Writes records of sentinels only, since only the bytes matter.

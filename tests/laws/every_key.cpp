@@ -16,7 +16,7 @@ std::vector<Identity> tasks(const Json& job) {
   const Plan plan = checked_plan(read(job));
   std::vector<Identity> found;
   for (const Task& task : plan.tasks()) {
-    const TaskIdentity identity = plan.identity(task.index);
+    const TaskInputs identity = plan.inputs(task.index);
     found.emplace_back(identity.trajectory, identity.guesses, identity.record);
   }
   return found;

@@ -35,7 +35,7 @@ TEST_CASE("a text of any size travels from rank 0") {
 }
 
 TEST_CASE("the least of all ranks' values is known to every rank") {
-  CHECK(least(10.0 - own_rank(), MPI_COMM_WORLD) == 11.0 - rank_count());
+  CHECK(min_over_ranks(10.0 - own_rank(), MPI_COMM_WORLD) == 11.0 - rank_count());
 }
 
 TEST_CASE("placement counts workers without the master, and cores once") {

@@ -86,7 +86,7 @@ TEST_CASE("a task is the same in another plan only where all that its results de
   for (const Task& a : small.tasks()) {
     int found = 0;
     for (const Task& b : more.tasks()) {
-      const TaskIdentity here = small.identity(a.index), there = more.identity(b.index);
+      const TaskInputs here = small.inputs(a.index), there = more.inputs(b.index);
       if (!(here == there)) continue;
       ++found;
       CHECK(a.sample == b.sample);
@@ -95,14 +95,14 @@ TEST_CASE("a task is the same in another plan only where all that its results de
     }
     CHECK(found == 1);
   }
-  const std::string trajectory = small.identity(0).trajectory;
+  const std::string trajectory = small.inputs(0).trajectory;
   for (const auto& [pointer, value] : std::map<std::string, std::string>{
            {"/seed", "4"}, {"/scene/damping_per_s", "1e-300"}, {"/solve", R"({"norm": "natural"})"}}) {
-    CHECK(plan_of(with(pointer, value, full_job())).identity(0).trajectory != trajectory);
+    CHECK(plan_of(with(pointer, value, full_job())).inputs(0).trajectory != trajectory);
   }
-  CHECK(plan_of(with("/record/trajectory_every", "1", full_job())).identity(0).record != small.identity(0).record);
+  CHECK(plan_of(with("/record/trajectory_every", "1", full_job())).inputs(0).record != small.inputs(0).record);
   // A time limit does not change a simulation.
-  CHECK(plan_of(with("/task_time_limit_s", "5", full_job())).identity(0).trajectory == trajectory);
+  CHECK(plan_of(with("/task_time_limit_s", "5", full_job())).inputs(0).trajectory == trajectory);
 }
 
 TEST_CASE("what is copied stands at its new rows") {

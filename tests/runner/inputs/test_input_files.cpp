@@ -65,8 +65,8 @@ TEST_CASE("what a task is depends on what its files hold, not on their names") {
   const JobFolder folder;
   folder.write("a.h5", "weights");
   folder.write("b.h5", "weights");
-  const auto identity = [&](const char* model) { return Plan(folder.job(learned(model))).identity(0); };
-  const TaskIdentity before = identity("a.h5");
+  const auto identity = [&](const char* model) { return Plan(folder.job(learned(model))).inputs(0); };
+  const TaskInputs before = identity("a.h5");
   CHECK(identity("b.h5").guesses == before.guesses);
   folder.write("a.h5", "other weights");
   CHECK(identity("a.h5").guesses != before.guesses);
@@ -82,7 +82,7 @@ TEST_CASE("a job whose files another process has read needs none of them") {
   const Job told = parse_job(read.text, read.path, from_bytes(to_bytes(read.files)));
   CHECK(told.files.at("a.h5").hash == read.files.at("a.h5").hash);
   CHECK(told.files.at("a.h5").path == read.files.at("a.h5").path);
-  CHECK(Plan(told).identity(0).guesses == Plan(read).identity(0).guesses);
+  CHECK(Plan(told).inputs(0).guesses == Plan(read).inputs(0).guesses);
 }
 
 TEST_CASE("a file has a use for each kind that its keys expect, whatever surrounds them") {

@@ -35,7 +35,7 @@ TEST_CASE("a file of curves beside the job becomes rods; its content is part of 
   CHECK(scene.rods.size() == 1);
   CHECK((scene.rods[0].position.back() - Vector3(0, 0, 0)).norm() < 1e-15);
   folder.write("bow.csv", "0 0 0\n100 0 0\n");
-  CHECK(Plan(folder.job(job)).identity(0).trajectory != plan.identity(0).trajectory);
+  CHECK(Plan(folder.job(job)).inputs(0).trajectory != plan.inputs(0).trajectory);
 }
 
 TEST_CASE("mistakes in a file of curves, or in what is held, are told with file and line") {
@@ -86,7 +86,7 @@ TEST_CASE("loads, motions and changes of gravity are read, and their values may 
   CHECK(read.loads[0].schedule.smooth);
   CHECK(read.loads[1].torque_nm == Vector3(1, 0, 0));
   CHECK(read.loads[1].schedule.at(2) == 1);
-  CHECK(plan.identity(0).trajectory != plan.identity(1).trajectory);
+  CHECK(plan.inputs(0).trajectory != plan.inputs(1).trajectory);
   const Plan moved =
       plan_of(with("/scene/motions", R"([{"at_m": [0, 0, 0], "rotation_deg": [90, 0, 0], "times_s": [0, 1],
       "factors": [0, 1]}])",

@@ -41,7 +41,7 @@ TEST_CASE("of a grid of methods, those of Gauss-Seidel have their defaults too")
 }
 
 TEST_CASE("iterations and stiffness are part of what a trajectory is") {
-  const auto trajectory = [](const std::string& solve) { return plan_of(by(solve)).identity(0).trajectory; };
+  const auto trajectory = [](const std::string& solve) { return plan_of(by(solve)).inputs(0).trajectory; };
   CHECK(trajectory(R"({"method": "xpbd"})") == trajectory(R"({"method": "xpbd", "iterations": 20})"));
   CHECK(trajectory(R"({"method": "xpbd"})") != trajectory(R"({"method": "xpbd", "iterations": 21})"));
   CHECK(trajectory(R"({"method": "pbd"})") != trajectory(R"({"method": "pbd", "bending_stiffness": 0.5})"));

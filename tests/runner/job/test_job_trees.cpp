@@ -88,9 +88,9 @@ TEST_CASE("wind blows on any scene, and may be one value of a grid with none") {
   CHECK(wind->gust_strength == 0.3);
   CHECK(wind->turbulence_modes == 16);
   CHECK(wind->drag_coefficient == 1.2);
-  CHECK(plan.identity(0).trajectory != plan.identity(1).trajectory);
+  CHECK(plan.inputs(0).trajectory != plan.inputs(1).trajectory);
   CHECK(build_scene(plan.spec(1).scene).wind);
-  CHECK(plan_of(with("/scene/wind", "\"none\"")).identity(0).trajectory == plan_of(small_job()).identity(0).trajectory);
+  CHECK(plan_of(with("/scene/wind", "\"none\"")).inputs(0).trajectory == plan_of(small_job()).inputs(0).trajectory);
 }
 
 TEST_CASE("winds and trees that a job cannot mean are refused with what is allowed") {
@@ -124,10 +124,10 @@ TEST_CASE("a skeleton is found beside the job; units, axis and root are brought 
   const Rod rod = build_scene(plan.spec(0).scene).rods.front();
   CHECK(rod.segments[1].radius_m == Approx(0.03).epsilon(1e-15));
 
-  const TaskIdentity before = plan.identity(0);
+  const TaskInputs before = plan.inputs(0);
   folder.write("plum.swc", (std::string(plum) + "4 0 0 0 150 1 3\n").c_str());
   const Plan grown(folder.job(skeleton_job(R"(, "skeleton_unit_m": 0.01, "skeleton_up": "z")")));
-  CHECK(grown.identity(0).trajectory != before.trajectory);
+  CHECK(grown.inputs(0).trajectory != before.trajectory);
   CHECK(grown.task(0).segments == 5);
 }
 

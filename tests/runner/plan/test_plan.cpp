@@ -198,8 +198,8 @@ TEST_CASE("an object that is swept against a word has a column that says which i
   const Plan wind = plan_of(with("/scene/wind", R"({"grid": [{"mean_m_s": [8, 0, 0], "turbulence_m_s": 2}, "none"]})"));
   CHECK(texts(wind, "scene.wind") == std::vector<std::string>{"mean_m_s [8,0,0], turbulence_m_s 2", "none"});
 
-  CHECK(contact("{}").identity(0).trajectory == plan.identity(1).trajectory);
-  CHECK(contact("{}").identity(0).trajectory != plan.identity(0).trajectory);
+  CHECK(contact("{}").inputs(0).trajectory == plan.inputs(1).trajectory);
+  CHECK(contact("{}").inputs(0).trajectory != plan.inputs(0).trajectory);
 }
 
 TEST_CASE("a duration becomes whole steps, in the tasks and in a column") {

@@ -3,9 +3,9 @@
 #include <csignal>
 
 #include "runner/command/sweep_summary.hpp"
+#include "runner/terminal/formats.hpp"
 #include "runner/terminal/progress.hpp"
 #include "runner/terminal/progress_line.hpp"
-#include "runner/terminal/text.hpp"
 #include "solver/plugin/printable.hpp"
 
 using namespace rodsweep;

@@ -1,4 +1,4 @@
-// The identity of a task across plans.
+// All inputs of a task's results, equal in all plans with this task.
 #include <fmt/format.h>
 
 #include "runner/keys/option_label.hpp"
@@ -29,13 +29,13 @@ void append(std::string& text, std::string_view path, const Point::Value& value,
 
 }  // namespace
 
-TaskIdentity Plan::identity(std::int64_t index) const {
+TaskInputs Plan::inputs(std::int64_t index) const {
   const Task task = tasks_.at(index);
   Point point;
   fill(point, task.point);
-  TaskIdentity identity;
+  TaskInputs inputs;
   const bool tries_guesses = solve_spec(point, job_).method == Method::cg;
-  if (tries_guesses) identity.guesses.resize(guess_labels_.size());
+  if (tries_guesses) inputs.guesses.resize(guess_labels_.size());
   std::map<std::string, std::size_t> by_path;
   for (std::size_t i = 0; i < space_.parameters().size(); ++i) by_path[space_.parameters()[i].path] = i;
   for (const auto& [path, parameter] : by_path) {
@@ -43,20 +43,20 @@ TaskIdentity Plan::identity(std::int64_t index) const {
     const Parameter& described = space_.parameters()[parameter];
     if (value.state == State::absent || has_option_label(described.key)) continue;
     if (path.rfind(guesses, 0) != 0) {
-      append(identity.trajectory, path, value, described, job_);
+      append(inputs.trajectory, path, value, described, job_);
     } else if (tries_guesses) {
       const std::size_t end = path.find(']');
       const auto guess = std::stoul(path.substr(guesses.size(), end - guesses.size()));
-      append(identity.guesses.at(guess), std::string_view(path).substr(end + 1), value, described, job_);
+      append(inputs.guesses.at(guess), std::string_view(path).substr(end + 1), value, described, job_);
     }
   }
-  identity.trajectory += fmt::format("seed {} sample {}\n", job_.seed, task.sample);
+  inputs.trajectory += fmt::format("seed {} sample {}\n", job_.seed, task.sample);
   if (task.own_guess >= 0) {
-    identity.trajectory += identity.guesses.at(static_cast<std::size_t>(task.own_guess));
-    identity.guesses.clear();
+    inputs.trajectory += inputs.guesses.at(static_cast<std::size_t>(task.own_guess));
+    inputs.guesses.clear();
   }
-  identity.record = job_.values["record"].dump();
-  return identity;
+  inputs.record = job_.values["record"].dump();
+  return inputs;
 }
 
 }  // namespace rodsweep

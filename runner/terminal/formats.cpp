@@ -1,4 +1,4 @@
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 
 #include <fmt/format.h>
 

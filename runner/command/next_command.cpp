@@ -1,10 +1,10 @@
-#include "runner/command/next_line.hpp"
+#include "runner/command/next_command.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "runner/dispatch/stop_signal.hpp"
-#include "runner/terminal/text.hpp"
+#include "runner/terminal/formats.hpp"
 #include "runner/text/beside_program.hpp"
 
 namespace rodsweep {
