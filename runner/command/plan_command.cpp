@@ -11,7 +11,6 @@
 #include "runner/command/plan_estimate.hpp"
 #include "runner/command/training_plan.hpp"
 #include "runner/file/file_creation.hpp"
-#include "runner/measure/evaluation.hpp"
 #include "runner/measure/host_memory.hpp"
 #include "runner/measure/inputs.hpp"
 #include "runner/terminal/formats.hpp"
@@ -203,7 +202,7 @@ ExitCode execute(const PlanOptions& options, Console& console) {
   if (is_training(job)) return show_training_plan(options, job, console);
   const Plan plan = checked_plan(job);
   limit_memory((1 - memory_reserve) * host_memory());
-  const std::vector<Probe> probes = options.probe ? probe(plan, evaluate) : std::vector<Probe>();
+  const std::vector<Probe> probes = options.probe ? probe(plan) : std::vector<Probe>();
   console.result(options.json ? json_text(to_json(plan, probes, options)) : to_text(plan, probes, options));
   return ExitCode::ok;
 }

@@ -19,7 +19,7 @@ void truncate(Task& task, TaskSpec& spec, int steps) {
   spec.time_limit_s = spec.time_limit_s > 0 ? std::min(spec.time_limit_s, too_long_s) : too_long_s;
 }
 
-Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate) {
+Probe probe_task(const Plan& plan, std::int64_t index, const RunTask& run) {
   const Task whole = plan.task(index);
   const TaskSpec whole_spec = plan.spec(index);
   const AxisSizes sizes = axis_sizes(plan);
@@ -30,7 +30,7 @@ Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate)
     TaskSpec spec = whole_spec;
     truncate(task, spec, static_cast<int>(steps));
     record.prepare(task, sizes);
-    evaluate(task, spec, record, [] { return false; });
+    run(task, spec, record, {});
     const double seconds = record.timing.elapsed_s.front();
     if (seconds < enough_s && steps < whole.steps && record.outcome == TaskOutcome::ok) continue;
 
@@ -63,7 +63,7 @@ double rate(const std::vector<Probe>& probes, double cost) {
 
 }  // namespace
 
-std::vector<Probe> probe(const Plan& plan, const Evaluate& evaluate) {
+std::vector<Probe> probe(const Plan& plan, const RunTask& run) {
   std::vector<std::int64_t> by_cost(static_cast<std::size_t>(plan.size()));
   std::iota(by_cost.begin(), by_cost.end(), 0);
   std::stable_sort(by_cost.begin(), by_cost.end(),
@@ -71,7 +71,7 @@ std::vector<Probe> probe(const Plan& plan, const Evaluate& evaluate) {
   std::vector<std::size_t> places{0, by_cost.size() / 2, by_cost.size() - 1};
   places.erase(std::unique(places.begin(), places.end()), places.end());
   std::vector<Probe> probes;
-  for (const std::size_t place : places) probes.push_back(probe_task(plan, by_cost[place], evaluate));
+  for (const std::size_t place : places) probes.push_back(probe_task(plan, by_cost[place], run));
   return probes;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/measure/task_body.hpp"
+#include "runner/measure/run_task.hpp"
 #include "runner/plan/plan.hpp"
 
 namespace rodsweep {
@@ -23,7 +23,9 @@ struct Probe {
   std::string message;
 };
 
-std::vector<Probe> probe(const Plan& plan, const Evaluate& evaluate);
+using RunTask = std::function<bool(const Task&, const TaskSpec&, TaskRecord&, const TaskHooks&)>;
+/// Tests replace `run` to pretend times.
+std::vector<Probe> probe(const Plan& plan, const RunTask& run = run_task);
 
 /// Estimated times on one core.
 struct Estimate {

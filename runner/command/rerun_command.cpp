@@ -8,7 +8,7 @@
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/file/results_file.hpp"
 #include "runner/file/unfinished_file.hpp"
-#include "runner/measure/task_body.hpp"
+#include "runner/measure/task_runner.hpp"
 
 namespace rodsweep {
 
@@ -27,7 +27,7 @@ ExitCode execute(const RerunOptions& options, Console& console) {
   const Task task = plan.task(0);
   console.note(
       fmt::format("task {}: {} segments, {} steps, {} frames", options.task, task.segments, task.steps, task.frames));
-  const TaskBody body = task_body(plan, [&](const Task& done, const TaskRecord& record, const TaskOrigin*) {
+  TaskRunner run(plan, [&](const Task& done, const TaskRecord& record, const TaskOrigin*) {
     ResultsFile file = ResultsFile::create(output, plan, provenance, MPI_COMM_SELF);
     file.write(done, record);
     const ExitCode code = record.outcome == TaskOutcome::ok ? ExitCode::ok : ExitCode::tasks_failed;
@@ -35,7 +35,7 @@ ExitCode execute(const RerunOptions& options, Console& console) {
     file.close();
     file.check_written();
   });
-  const TaskResult result = body(0, [&] { return signal.received() != 0; });
+  const TaskResult result = run(0, [&] { return signal.received() != 0; });
   if (result.outcome == TaskOutcome::pending) {
     console.note(fmt::format("stopped early by {}; nothing was written", signal_cause(signal.received())));
     return ExitCode::stopped;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 #include <functional>
 #include <utility>
 
@@ -11,31 +10,26 @@
 #include "runner/command/sweep_opening.hpp"
 #include "runner/command/sweep_tasks.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
-#include "runner/measure/task_body.hpp"
+#include "runner/measure/task_runner.hpp"
 
 namespace rodsweep {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-/// Counts tries in the file. A non-zero count on an incomplete task means that its worker crashed.
-TaskBody counting_tries(TaskBody body, const Plan& plan, ResultsFile& file) {
-  return [body = std::move(body), &plan, &file](std::int64_t index, const StopRequested& stop) {
-    const Task task = plan.task(index);
+/// Runs tasks, and counts tries in the file. A non-zero count on an incomplete task means that its worker crashed.
+TaskBody body_of(Sweep& sweep) {
+  ResultsFile& file = *sweep.file;
+  TaskRunner run(sweep.plan, [&file](const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
+    file.write(task, record, origin);
+  });
+  if (sweep.extension)  // the rank that finds the damage prints
+    run.copy_from(*sweep.extension, [](const std::string& text) { Console(true).warn(text); });
+  return [&sweep, &file, run = std::move(run)](std::int64_t index, const StopRequested& stop) mutable {
+    const Task task = sweep.plan.task(index);
     file.begin(task);
-    // A failure within stop() (a sync, a message) is not the task's outcome.
-    std::exception_ptr failure;
-    const StopRequested checked_stop = [&] {
-      try {
-        return stop();
-      } catch (...) {
-        failure = std::current_exception();
-        return true;
-      }
-    };
     try {
-      TaskResult result = body(index, checked_stop);
-      if (failure) std::rethrow_exception(failure);
+      TaskResult result = run(index, stop);
       if (result.outcome == TaskOutcome::pending) file.abandon(task);
       return result;
     } catch (...) {  // this rank did not crash: the try does not count
@@ -43,17 +37,6 @@ TaskBody counting_tries(TaskBody body, const Plan& plan, ResultsFile& file) {
       throw;
     }
   };
-}
-
-TaskBody body_of(Sweep& sweep) {
-  ResultsFile& file = *sweep.file;
-  const WriteRecord write = [&file](const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
-    file.write(task, record, origin);
-  };
-  const auto warn = [](const std::string& text) { Console(true).warn(text); };  // the rank that finds the damage prints
-  return counting_tries(
-      sweep.extension ? extending_body(sweep.plan, *sweep.extension, write, warn) : task_body(sweep.plan, write),
-      sweep.plan, file);
 }
 
 Progress progress_of(const Sweep& sweep) {

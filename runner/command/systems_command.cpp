@@ -7,7 +7,7 @@
 #include "runner/file/provenance.hpp"
 #include "runner/file/systems_file.hpp"
 #include "runner/file/unfinished_file.hpp"
-#include "runner/measure/task_body.hpp"
+#include "runner/measure/task_runner.hpp"
 
 namespace rodsweep {
 
@@ -21,17 +21,13 @@ ExitCode execute(const SystemsOptions& options, Console& console) {
   if (const std::string left = unfinished_text(output); !left.empty()) console.warn(left);
 
   SystemsFile systems;
-  const ObserveSystem observe = [&](const Rod& rod, const LinearSystem& system, const SolvePosition& at,
-                                    const VectorX& solution) {
+  const auto nothing = [](const Task&, const TaskRecord&, const TaskOrigin*) {};
+  TaskHooks hooks;
+  hooks.observe = [&](const Rod& rod, const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
     if (at.step % options.every == 0 && (at.newton == 0 || !options.first)) systems.add(rod, system, at, solution);
   };
-  const auto nothing = [](const Task&, const TaskRecord&, const TaskOrigin*) {};
-  const TaskBody body =
-      task_body(stored.alone, nothing,
-                [&](const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
-                  return evaluate_observed(observe, task, spec, record, stop);
-                });
-  const TaskResult result = body(0, [&] { return signal.received() != 0; });
+  TaskRunner run(stored.alone, nothing, hooks);
+  const TaskResult result = run(0, [&] { return signal.received() != 0; });
   if (result.outcome == TaskOutcome::pending) {
     console.note(fmt::format("stopped early by {}; nothing was written", signal_cause(signal.received())));
     return ExitCode::stopped;

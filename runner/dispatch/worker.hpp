@@ -3,7 +3,7 @@
 // A running task calls StopRequested between time steps and within solves, and while it runs a user's code from another
 // thread (solver/linear/interruption.hpp). This call also reads messages every few milliseconds and sends a heartbeat about
 // every second. An exception from the task's body, such as a failed write to
-// the results file, ends this rank. A failure of the task itself is an outcome (runner/measure/task_body.hpp).
+// the results file, ends this rank. A failure of the task itself is an outcome (runner/measure/task_runner.hpp).
 #pragma once
 
 #include <chrono>
@@ -13,10 +13,12 @@
 #include <string>
 
 #include "runner/dispatch/channel.hpp"
-#include "runner/dispatch/stop_requested.hpp"
 #include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
+
+/// A running task polls it between time steps and within them. True: abandon the task and discard its results.
+using StopRequested = std::function<bool()>;
 
 struct TaskResult {
   TaskOutcome outcome = TaskOutcome::pending;  ///< pending: abandoned on request

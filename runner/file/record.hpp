@@ -1,4 +1,4 @@
-// The results of one task in memory, a struct for each table of the file: evaluate() fills a TaskRecord, ResultsFile
+// The results of one task in memory, a struct for each table of the file: run_task() fills a TaskRecord, ResultsFile
 // writes it. runner/file/columns.hpp describes the columns.
 //
 // Before the task starts, every column is sized and filled with its sentinel: -1 for counts, NaN for measurements,

@@ -1,5 +1,5 @@
 // The settings of one task of a sweep, a simulation.
-// Plain values; created by Plan (runner/plan/plan.hpp), run by evaluate() (runner/measure/evaluation.hpp).
+// Plain values; created by Plan (runner/plan/plan.hpp), run by run_task() (runner/measure/run_task.hpp).
 #pragma once
 
 #include <cstdint>
@@ -112,7 +112,7 @@ struct OutputSpec {
   }
 };
 
-/// The input of evaluate().
+/// The input of run_task().
 struct TaskSpec {
   SceneSpec scene;
   TimeSpec time;

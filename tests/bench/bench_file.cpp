@@ -11,7 +11,7 @@
 #include "runner/file/extension.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/results_file.hpp"
-#include "runner/measure/evaluation.hpp"
+#include "runner/measure/run_task.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/formats.hpp"
 #include "solver/cg/petsc_session.hpp"
@@ -97,7 +97,7 @@ void bench_share(const fs::path& path, const char* name, const Plan& plan) {
     TaskRecord record;
     for (const Task& task : plan.tasks()) {
       record.prepare(task, axis_sizes(plan));
-      evaluate(task, plan.spec(task.index), record, [] { return false; });
+      run_task(task, plan.spec(task.index), record);
       file.write(task, record);
     }
   }

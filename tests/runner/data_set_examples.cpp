@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "runner/measure/evaluation.hpp"
+#include "runner/measure/run_task.hpp"
 
 namespace rodsweep {
 
@@ -10,7 +10,7 @@ TaskRecord record_of(const Plan& plan, std::int64_t index) {
   const Task task = plan.task(index);
   TaskRecord record;
   record.prepare(task, axis_sizes(plan));
-  if (!evaluate(task, plan.spec(index), record, [] { return false; })) throw std::logic_error("abandoned");
+  if (!run_task(task, plan.spec(index), record)) throw std::logic_error("abandoned");
   return record;
 }
 

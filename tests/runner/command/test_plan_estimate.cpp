@@ -9,8 +9,8 @@ using namespace rodsweep;
 namespace test_plan_estimate {
 
 /// Pretends that the requested steps take `seconds_per_cost` per unit of Task::cost.
-Evaluate taking(double seconds_per_cost) {
-  return [=](const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
+RunTask taking(double seconds_per_cost) {
+  return [=](const Task& task, const TaskSpec& spec, TaskRecord& record, const TaskHooks&) {
     record.outcome = TaskOutcome::ok;
     record.tasks.steps_done[0] = spec.time.steps;
     record.timing.elapsed_s[0] = seconds_per_cost * task.segments * spec.time.steps * spec.time.newton_iterations;
@@ -64,7 +64,7 @@ TEST_CASE("no shard's master hands out more than half of what it can") {
 
 TEST_CASE("a probe that fails says so and is extrapolated from the steps that it took") {
   const Plan plan = plan_of(with("/time/steps", "100"));
-  const auto probes = probe(plan, [](const Task&, const TaskSpec&, TaskRecord& record, const StopRequested&) {
+  const auto probes = probe(plan, [](const Task&, const TaskSpec&, TaskRecord& record, const TaskHooks&) {
     record.outcome = TaskOutcome::diverged;
     record.message = "joint gap 12";
     record.tasks.steps_done[0] = 2;

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runner/measure/evaluation.hpp"
 #include "runner/measure/measured_solve.hpp"
+#include "runner/measure/run_task.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/hand_clock.hpp"
 #include "tests/runner/data_set_examples.hpp"
@@ -19,7 +19,7 @@ TaskRecord evaluated(const Json& job, TaskOutcome expected = TaskOutcome::ok,
   REQUIRE(plan.size() == 1);
   TaskRecord record;
   record.prepare(plan.task(0), axis_sizes(plan));
-  REQUIRE(evaluate_by_clock(now, plan.task(0), plan.spec(0), record, [] { return false; }));
+  REQUIRE(run_task(plan.task(0), plan.spec(0), record, {now}));
   INFO(record.message);
   CHECK(record.outcome == expected);
   return record;
@@ -65,7 +65,7 @@ TEST_CASE("a time limit and a stop are met in the middle of a solve") {
   record.prepare(plan.task(0), axis_sizes(plan));
   int asked = 0;
   const auto stop = [&] { return record.tasks.steps_done[0] == 0 && ++asked > 2; };  // after set-up
-  CHECK_FALSE(evaluate_by_clock(test::HandClock::ticking, plan.task(0), plan.spec(0), record, stop));
+  CHECK_FALSE(run_task(plan.task(0), plan.spec(0), record, {test::HandClock::ticking, stop}));
   CHECK(record.tasks.steps_done[0] == 0);
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("a time limit and a stop are met while scene and systems are built") {
   const Plan plan = plan_of(job);
   TaskRecord record;
   record.prepare(plan.task(0), axis_sizes(plan));
-  CHECK_FALSE(evaluate_by_clock(test::HandClock::ticking, plan.task(0), plan.spec(0), record, [] { return true; }));
+  CHECK_FALSE(run_task(plan.task(0), plan.spec(0), record, {test::HandClock::ticking, [] { return true; }}));
   CHECK(record.tasks.steps_done[0] == -1);  // stopped too early for a log entry
 }
 

@@ -1,4 +1,4 @@
-#include "runner/measure/evaluation.hpp"
+#include "runner/measure/run_task.hpp"
 
 #include <exception>
 #include <memory>
@@ -37,10 +37,10 @@ class ObservedSolve : public LinearSolve {
 
 /// Builds the scene and its systems and runs the steps; sets outcome and message. Returns false if abandoned between
 /// steps. If interrupted elsewhere, throws InterruptedComputation and sets no ratios: the last system may lack guesses.
-bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop, TimeSource now,
-              const Stopwatch& watch, const ObserveSystem& observe) {
+bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const TaskHooks& hooks,
+              const Stopwatch& watch) {
   const auto is_late = [&] { return spec.time_limit_s > 0 && watch.seconds() > spec.time_limit_s; };
-  const Interruptible interruptible([&] { return (stop && stop()) || is_late(); }, now);
+  const Interruptible interruptible([&] { return hooks.stop() || is_late(); }, hooks.clock);
   Scene scene = build_scene(spec.scene);
   MeasuredSolve solve(scene, spec, record);
   std::optional<StoringSolve> storing;
@@ -48,13 +48,13 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
     storing.emplace(scene, iterations, solve, record);
   LinearSolve* outermost = storing ? static_cast<LinearSolve*>(&*storing) : &solve;
   std::optional<ObservedSolve> observed;
-  if (observe) outermost = &observed.emplace(scene, *outermost, observe);
+  if (hooks.observe) outermost = &observed.emplace(scene, *outermost, hooks.observe);
   const std::unique_ptr<Projection> projection = make_projection(scene, spec, record, *outermost);
   TimeStepper stepper(scene, step_settings(spec.time));
 
   SimulationLog simulation(task, spec, record, scene);
   for (int step = 0; step < spec.time.steps; ++step) {
-    if (stop && stop()) return false;
+    if (hooks.stop()) return false;
     if (simulation.out_of_time(watch.seconds())) break;
     solve.take_elapsed_s();
     const Stopwatch step_watch;
@@ -73,14 +73,13 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
 
 }  // namespace
 
-static bool run_task(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
-                     const StopRequested& stop, const ObserveSystem& observe) {
-  const Stopwatch watch(now);
+bool run_task(const Task& task, const TaskSpec& spec, TaskRecord& record, const TaskHooks& hooks) {
+  const Stopwatch watch(hooks.clock);
   bool finished = true;
   try {
-    finished = simulate(task, spec, record, stop, now, watch, observe);
+    finished = simulate(task, spec, record, hooks, watch);
   } catch (const InterruptedComputation& interrupted) {
-    finished = !(stop && stop());
+    finished = !hooks.stop();
     if (finished) end_late(spec, record, interrupted.where());
   } catch (const std::bad_alloc&) {
     record.outcome = TaskOutcome::error;
@@ -91,20 +90,6 @@ static bool run_task(TimeSource now, const Task& task, const TaskSpec& spec, Tas
   }
   record.timing.elapsed_s[0] = watch.seconds();
   return finished;
-}
-
-bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
-  return run_task(std::chrono::steady_clock::now, task, spec, record, stop, nullptr);
-}
-
-bool evaluate_by_clock(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
-                       const StopRequested& stop) {
-  return run_task(now, task, spec, record, stop, nullptr);
-}
-
-bool evaluate_observed(const ObserveSystem& observe, const Task& task, const TaskSpec& spec, TaskRecord& record,
-                       const StopRequested& stop) {
-  return run_task(std::chrono::steady_clock::now, task, spec, record, stop, observe);
 }
 
 }  // namespace rodsweep
