@@ -77,6 +77,13 @@ Callbacks callbacks_of(Sweep& sweep) {
   return callbacks;
 }
 
+/// A failed heartbeat is a warning, given once, because the results do not depend on it.
+void beat(Sweep& sweep, const Progress& progress, bool& warned) try {
+  sweep.file->beat(progress.seconds_left(Progress::Clock::now()));
+} catch (const Hdf5Error& error) {
+  if (!std::exchange(warned, true)) sweep.console.warn(fmt::format("the heartbeat failed: {}", error.what()));
+}
+
 /// Master and worker take turns in one process.
 Dispatch dispatch_alone(Sweep& sweep, Progress& progress, const std::function<void()>& now_and_then) {
   const auto received = [&] { return sweep.signal.received(); };
@@ -126,9 +133,10 @@ void dispatch_sweep(Sweep& sweep) {
   const MpiSession& mpi = sweep.mpi;
   Progress progress = progress_of(sweep);
   const Callbacks callbacks = callbacks_of(sweep);
+  bool warned = false;
   const auto now_and_then = [&] {
     sweep.file->commit_if_due();
-    if (mpi.rank() == 0) sweep.file->beat(progress.seconds_left(Progress::Clock::now()));
+    if (mpi.rank() == 0) beat(sweep, progress, warned);
   };
   Dispatch& dispatch = sweep.summary.dispatch;
   if (mpi.rank() > 0)

@@ -100,7 +100,7 @@ class TrainingRun {
   std::optional<Training> training_;
   std::optional<ModelFile> file_;
   std::optional<ProgressLine> progress_;
-  std::vector<TrainingRunRow> runs_;
+  std::vector<RunRow> runs_;
   Stopwatch since_begin_, since_save_;  ///< since the first step; since the last save
   double save_s_ = 0;                   ///< duration of the last save
   std::int64_t first_step_ = 0;

@@ -119,7 +119,7 @@ Json to_json(const StoredModel& stored, const std::filesystem::path& path) {
             {"base_cg_ratio", to_json(card.base_cg_ratio)}};
   for (const SceneRatios& of : card.scenes)
     json["scenes"][of.scene] = {{"cg_ratio", to_json(of.cg_ratio)}, {"base_cg_ratio", to_json(of.base_cg_ratio)}};
-  for (const TrainingRunRow& run : card.runs)
+  for (const RunRow& run : card.runs)
     json["runs"].push_back({{"begin", run.provenance.begin_utc},
                             {"end", run.end_utc.empty() ? Json() : Json(run.end_utc)},
                             {"exit_code", run.end_utc.empty() ? Json() : Json(run.exit_code)},

@@ -66,4 +66,26 @@ void check_common_place(const fs::path& path, MPI_Comm comm) {
                   path.native(), fmt::join(hosts, ", ")));
 }
 
+void on_first_rank(MPI_Comm comm, const std::function<void()>& work) {
+  int rank = 0;
+  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
+  enum { fine, file_error, other_error };
+  int outcome = fine;
+  std::string text;
+  if (rank == 0) {
+    try {
+      work();
+    } catch (const FileError& error) {
+      outcome = file_error, text = error.what();
+    } catch (const std::exception& error) {
+      outcome = other_error, text = error.what();
+    }
+  }
+  outcome = broadcast(outcome, comm);
+  if (outcome == fine) return;
+  text = broadcast(std::move(text), comm);
+  if (outcome == file_error) throw FileError(text);
+  throw Hdf5Error(text);
+}
+
 }  // namespace rodsweep

@@ -40,15 +40,6 @@ bool SyncedFile::is_in_place() const {
          mine.st_ino == there.st_ino;
 }
 
-bool SyncedFile::beat() {
-  constexpr std::chrono::seconds pause{1};
-  const auto now = std::chrono::steady_clock::now();
-  if (now < next_beat_) return false;
-  next_beat_ = now + pause;
-  futimens(descriptor_.number(), nullptr);
-  return true;
-}
-
 void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const Descriptor descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

@@ -6,7 +6,6 @@
 
 #include <unistd.h>
 
-#include <chrono>
 #include <filesystem>
 #include <utility>
 
@@ -43,11 +42,8 @@ class SyncedFile {
   void sync() const;
   /// Whether the path still leads to this file.
   bool is_in_place() const;
-  /// A heartbeat: sets the file's modification time to now, at most once a second. Whether it did.
-  bool beat();
 
  private:
-  std::chrono::steady_clock::time_point next_beat_{};
   std::filesystem::path path_;
   Descriptor descriptor_;
 };

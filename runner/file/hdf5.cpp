@@ -257,6 +257,13 @@ void write_texts(hid_t file, const std::string& path, const std::vector<std::str
   check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer.data()), "H5Dwrite", path);
 }
 
+void store_texts(hid_t file, const std::string& path, const std::vector<std::string>& texts) {
+  std::size_t bytes = 1;
+  for (const std::string& text : texts) bytes = std::max(bytes, text.size());
+  create_dataset(file, path, text_type(bytes).id(), {texts.size()});
+  write_texts(file, path, texts);
+}
+
 std::string read_text_row(hid_t file, const std::string& path, hsize_t row) {
   return read_text_row(RowDataset(file, path), row);
 }

@@ -154,6 +154,22 @@ void write_all(hid_t file, const std::string& path, const std::vector<T>& values
   check(H5Dwrite(dataset.id(), type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite", path);
 }
 
+void write_attribute(hid_t object, const char* name, std::string_view value);
+void write_attribute(hid_t object, const char* name, std::int32_t value);
+
+/// Creates a dataset with its values and the attributes unit and meaning.
+template <class Values>
+void store(hid_t file, const std::string& path, const std::vector<hsize_t>& extent, const Values& values,
+           const char* unit, const char* meaning) {
+  const hid_t type = type_of<typename Values::value_type>();
+  const Dataset dataset = create_dataset(file, path, type, extent);
+  check(H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite", path);
+  write_attribute(dataset.id(), "unit", unit);
+  write_attribute(dataset.id(), "meaning", meaning);
+}
+/// Creates a dataset of texts, as wide as the longest of them.
+void store_texts(hid_t file, const std::string& path, const std::vector<std::string>& texts);
+
 /// Fixed-length text, without its padding.
 std::vector<std::string> read_texts(hid_t file, const std::string& path);
 void write_texts(hid_t file, const std::string& path, const std::vector<std::string>& values);
@@ -178,8 +194,6 @@ T read_row(const RowDataset& rows, hsize_t row) {
   return value;
 }
 
-void write_attribute(hid_t object, const char* name, std::string_view value);
-void write_attribute(hid_t object, const char* name, std::int32_t value);
 bool has_attribute(hid_t file, const std::string& object, const char* name);
 std::string read_text_attribute(hid_t file, const std::string& object, const char* name);
 std::int32_t read_int_attribute(hid_t file, const std::string& object, const char* name);

@@ -16,13 +16,13 @@ struct Provenance {
   bool oversubscribed = false;  ///< more ranks than cores: timings are invalid
 };
 
-/// One run of the program on a sweep: a row of /runs.
+/// One run of the program on a sweep or a training: a row of /runs. A training has neither left_s nor source.
 struct RunRow {
   Provenance provenance;
   std::string end_utc;      ///< empty: still running, or killed
   int exit_code = -1;       ///< -1: still running, or killed
   double left_s = NAN;      ///< at the last heartbeat; NaN: unknown
-  std::string source;       ///< the extended or merged file that had this run; empty: a run of this file
+  std::string source{};     ///< the extended or merged file that had this run; empty: a run of this file
   std::int64_t tasks = 0;   ///< tasks that this run completed (inspect())
   double task_seconds = 0;  ///< sum of their wall times (inspect())
 };

@@ -13,13 +13,10 @@
 #include "runner/file/columns.hpp"
 #include "runner/file/common_place.hpp"
 #include "runner/file/durable.hpp"
-#include "runner/file/file_reading.hpp"
-#include "runner/file/inspect.hpp"
+#include "runner/file/heartbeat.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/record.hpp"
-#include "runner/file/resume_check.hpp"
 #include "runner/file/runs.hpp"
-#include "runner/file/task_reader.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/plan/task_outcome.hpp"
 #include "solver/linear/interruption.hpp"
@@ -30,124 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Runs `work` on rank 0. If it throws, every rank throws an error with the same text.
-template <class Work>
-void on_first_rank(MPI_Comm comm, Work&& work) {
-  int rank = 0;
-  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
-  enum { fine, file_error, other_error };
-  int outcome = fine;
-  std::string text;
-  if (rank == 0) {
-    try {
-      work();
-    } catch (const FileError& error) {
-      outcome = file_error, text = error.what();
-    } catch (const std::exception& error) {
-      outcome = other_error, text = error.what();
-    }
-  }
-  outcome = broadcast(outcome, comm);
-  if (outcome == fine) return;
-  text = broadcast(std::move(text), comm);
-  if (outcome == file_error) throw FileError(text);
-  throw Hdf5Error(text);
-}
-
 /// The hosts of all ranks without duplicates, in rank order. Collective.
 std::string host_names(MPI_Comm comm) { return fmt::format("{}", fmt::join(gather_distinct(host_name(), comm), " ")); }
-
-/// Why a task marked as complete is run again.
-enum Again : std::uint8_t { not_again, failed, damaged };
-
-/// Sets invalid state bytes to 0, so that their tasks are pending.
-void mend_states(const fs::path& path, const std::vector<std::uint8_t>& states) {
-  if (std::all_of(states.begin(), states.end(), [](std::uint8_t state) { return state <= 1; })) return;
-  const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
-  for (std::size_t task = 0; task < states.size(); ++task)
-    if (states[task] > 1) hdf5::write_row<std::uint8_t>(file.id(), "/tasks/state", task, 0);
-}
-
-/// For file systems without locks: throws FileError if the last run has not ended and its heartbeat is recent.
-void refuse_living(const fs::path& path) {
-  const std::vector<RunRow> runs = read_runs(open_results(path));
-  const double silent_s = silent_seconds(path);
-  if (runs.empty() || !runs.back().end_utc.empty() || silent_s > alive_s) return;
-  throw FileError(
-      fmt::format("{} seems to be in use by another run: its last activity was {:.0f} s ago (this file system has no "
-                  "locks); wait until it ends, or, if it was killed, for {:.0f} s without activity",
-                  path.native(), silent_s, alive_s));
-}
-
-bool intact(const TaskReader& reader, std::int64_t task, TaskRecord& record, const fs::path& path) try {
-  return reader.read_intact(task, record);
-} catch (const std::bad_alloc&) {
-  throw FileError(
-      fmt::format("{}: the results of task {} exceed the memory limit of this process and cannot be verified: use "
-                  "fewer ranks per host, or raise --memory-limit-gb",
-                  path.native(), task));
-}
-
-struct Verified {
-  std::vector<std::uint8_t> again;  ///< for each task, whether it is run again and why
-  std::int64_t left_out = 0;        ///< finished tasks that were not verified
-};
-
-/// Collective. Begins at another task in each run, so that runs which have time for a part verify all in the end.
-/// Returns none if `verifying` is Verify::stop on any rank.
-std::optional<Verified> to_run_again(const fs::path& path, const Plan& plan, const ResumePoint& point, Retry retry,
-                                     MPI_Comm comm, const std::function<Verify()>& verifying) {
-  int rank = 0, size = 1;
-  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
-  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
-  const std::vector<std::uint8_t>& done = point.done;
-  constexpr double golden = 0.618033988749895;
-  const auto first = static_cast<std::size_t>(std::fmod(golden * point.runs, 1) * static_cast<double>(done.size()));
-  Verified verified;
-  verified.again.assign(done.size(), not_again);
-  std::uint8_t stopped = 0;
-  collectively(comm, [&] {
-    const TaskReader reader(path, TaskReader::Times::left_out, plan.tasks());
-    SyncedFile file(path);
-    TaskRecord record;
-    Verify state = Verify::on;
-    for (auto k = static_cast<std::size_t>(rank); k < done.size(); k += static_cast<std::size_t>(size)) {
-      const std::size_t i = (first + k) % done.size();
-      const auto task = static_cast<std::int64_t>(i);
-      if (done[i] > 1) verified.again[i] = damaged;
-      if (done[i] != 1) continue;
-      if (state == Verify::on) {
-        if (rank == 0) file.beat();
-        state = verifying();
-      }
-      if (state == Verify::stop) {
-        stopped = 1;
-        return;
-      }
-      if (state == Verify::enough) ++verified.left_out;
-      if (state == Verify::on && !intact(reader, task, record, path))
-        verified.again[i] = damaged;
-      else if (retry == Retry::failed && may_change(reader.outcome(task)))
-        verified.again[i] = failed;
-    }
-  });
-  verified.again.push_back(stopped);
-  check_mpi(MPI_Allreduce(MPI_IN_PLACE, verified.again.data(), static_cast<int>(verified.again.size()), MPI_UINT8_T,
-                          MPI_MAX, comm),
-            "MPI_Allreduce");
-  check_mpi(MPI_Allreduce(MPI_IN_PLACE, &verified.left_out, 1, MPI_INT64_T, MPI_SUM, comm), "MPI_Allreduce");
-  if (verified.again.back() != 0) return std::nullopt;
-  verified.again.pop_back();
-  return verified;
-}
-
-/// "task 3 is" or "4 tasks, the first being 3, are"; empty if there are none.
-std::string these_tasks(const std::vector<std::uint8_t>& again, Again why) {
-  const auto count = std::count(again.begin(), again.end(), why);
-  if (count == 0) return "";
-  const auto first = std::find(again.begin(), again.end(), why) - again.begin();
-  return count == 1 ? fmt::format("task {} is", first) : fmt::format("{} tasks (first: {}) are", count, first);
-}
 
 /// Writes a column of a task block by block. Subtracts the bytes from `bytes_left` of its record. If interrupted, throws
 /// InterruptedComputation unless little is left.
@@ -214,6 +95,7 @@ struct ResultsFile::Open {
   bool sync_failed = false;
   FileLock lock;  // on rank 0
   SyncedFile synced;
+  FileHeartbeat heartbeat;
   Clock::time_point next_commit = Clock::now();
   std::vector<std::int64_t> written;  ///< tasks with written data, whose state byte is not set yet
   std::int64_t committed = 0;
@@ -221,7 +103,7 @@ struct ResultsFile::Open {
   AxisSizes sizes;
   RunRow run;                             // of this run
   std::vector<hdf5::RowDataset> columns;  // in the order of columns(); empty: not in the file
-  hdf5::RowDataset state, outcome, message, checksum, tries, rank, host, run_row, write_s;
+  hdf5::RowDataset state, outcome, message, checksum, tries, rank, host, run_row, write_s, left_s;
   hdf5::Datatype outcome_type = hdf5::text_type(outcome_bytes), message_type = hdf5::text_type(message_bytes);
   hdf5::Datatype host_type = hdf5::text_type(host_bytes);
   std::string own_host = host_name();
@@ -247,36 +129,15 @@ ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Pr
 
 std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance,
                                                MPI_Comm comm, Retry retry, const std::function<Verify()>& verifying) {
-  ResumePoint point;
-  FileLock lock;
   check_common_place(path, comm);
-  on_first_rank(comm, [&] {
-    lock = FileLock(path);
-    point = check_resumable(path, plan);
-    if (!lock.held()) refuse_living(path);
-    mend_states(path, point.done);
-  });
-  for (std::vector<std::uint8_t>* bytes : {&point.done, &point.tries}) {
-    bytes->resize(static_cast<std::size_t>(plan.size()));
-    check_mpi(MPI_Bcast(bytes->data(), static_cast<int>(bytes->size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
-  }
-  point.runs = broadcast(point.runs, comm);
-  const auto verified = to_run_again(path, plan, point, retry, comm, verifying);
-  if (!verified) return std::nullopt;
-  const std::int64_t finished = std::count(point.done.begin(), point.done.end(), 1);
-  for (std::size_t i = 0; i < verified->again.size(); ++i) {
-    const bool is_again = verified->again[i] != not_again;
-    if (is_again) point.done[i] = 0;
-    if (is_again || retry == Retry::failed) point.tries[i] = 0;
-  }
-  const bool is_verified = verified->left_out == 0;  // if not, the row makes the next run begin at another task
-  const bool is_complete = std::find(point.done.begin(), point.done.end(), 0) == point.done.end();
-  ResultsFile file(path, plan, std::move(point.done), point.runs, std::move(point.tries), provenance, comm,
-                   std::move(lock), !is_verified || !is_complete);
-  file.take_back(verified->again, comm);
-  if (verified->left_out > 0)
-    file.add_note(fmt::format("{}: time was left to verify {} of {} finished tasks; later runs verify others",
-                              path.native(), finished - verified->left_out, finished));
+  std::optional<ResumedFile> found = resume_file(path, plan, comm, retry, verifying);
+  if (!found) return std::nullopt;
+  // Without all tasks verified, the row makes the next run begin at another task.
+  const bool has_row = !found->is_verified || !found->is_complete;
+  ResultsFile file(path, plan, std::move(found->done), found->runs, std::move(found->tries), provenance, comm,
+                   std::move(found->lock), has_row);
+  file.take_back(found->again, comm);
+  if (!found->note.empty()) file.add_note(found->note);
   return file;
 }
 
@@ -299,6 +160,7 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     open_->path = path;
     open_->lock = std::move(lock);
     open_->synced = SyncedFile(path);
+    open_->heartbeat = FileHeartbeat(path);
     open_->sizes = axis_sizes(plan);
     check_mpi(MPI_Comm_rank(comm, &open_->own_rank), "MPI_Comm_rank");
     const auto open_rows = [&](const char* dataset) { return hdf5::RowDataset(open_->file.id(), dataset); };
@@ -311,6 +173,7 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     open_->host = open_rows("/timing/tasks/host");
     open_->run_row = open_rows("/timing/tasks/run");
     open_->write_s = open_rows("/timing/tasks/write_s");
+    open_->left_s = open_rows("/runs/left_s");
     for (const Column& column : columns()) open_->columns.push_back(open_rows(column.path));
   });
   if (open_->own_rank == 0 && !open_->lock.held())
@@ -326,22 +189,15 @@ void ResultsFile::write_run_row() {
 }
 
 /// Marks the tasks to run again as pending in the file, before anything is overwritten.
-void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm) {
-  if (std::all_of(again.begin(), again.end(), [](std::uint8_t why) { return why == not_again; })) return;
+void ResultsFile::take_back(const std::vector<std::int64_t>& again, MPI_Comm comm) {
+  if (again.empty()) return;
   on_first_rank(comm, [&] {
-    for (std::size_t i = 0; i < again.size(); ++i)
-      if (again[i]) {
-        open_->set_state(static_cast<std::int64_t>(i), 0);
-        open_->set_tries(static_cast<std::int64_t>(i), 0);
-      }
+    for (const std::int64_t task : again) {
+      open_->set_state(task, 0);
+      open_->set_tries(task, 0);
+    }
     open_->synced.sync();
   });
-  const auto note = [&](Again why, const char* text) {
-    const std::string tasks = these_tasks(again, why);
-    if (!tasks.empty()) add_note(fmt::format("{}: {} run again, {}", open_->path.native(), tasks, text));
-  };
-  note(damaged, "because of a wrong checksum");
-  note(failed, "after an error, a timeout or a crash");
 }
 
 void ResultsFile::add_note(const std::string& text) { note_ += (note_.empty() ? "" : "; ") + text; }
@@ -410,9 +266,10 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
 }
 
 void ResultsFile::beat(std::optional<double> left_s) {
-  if (!open_->synced.beat()) return;
+  if (!open_->heartbeat.beat()) return;
   open_->run.left_s = left_s.value_or(NAN);
-  write_run_row();
+  if (has_row_ && open_->left_s)
+    open_->left_s.write(hdf5::type_of<double>(), static_cast<hsize_t>(run_index_), 1, &open_->run.left_s);
 }
 
 void ResultsFile::end_run(const std::string& end_utc, int exit_code) {

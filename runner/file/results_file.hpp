@@ -24,18 +24,12 @@
 #include "runner/file/durable.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/file/file_error.hpp"
-#include "runner/file/file_lock.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
+#include "runner/file/resuming.hpp"
 #include "runner/plan/plan.hpp"
 
 namespace rodsweep {
-
-/// Which ended tasks a resumed sweep runs again.
-enum class Retry { none, failed };
-
-/// Whether to go on verifying the tasks of a resumed file, to trust the others, or to leave the file.
-enum class Verify { on, enough, stop };
 
 class ResultsFile {
  public:
@@ -85,7 +79,7 @@ class ResultsFile {
   std::int64_t committed() const;  ///< number of tasks, of this rank in this run
 
   /// Independent, first rank: the heartbeat. Once a second it renews the file's modification time and stores the
-  /// time left.
+  /// time left. Throws Hdf5Error if that fails; all results are still written as before.
   void beat(std::optional<double> left_s);
 
   /// Independent, one rank: stores the end of this run in its row of /runs.
@@ -108,7 +102,7 @@ class ResultsFile {
 
   void add_note(const std::string& text);
   void write_run_row();
-  void take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm);
+  void take_back(const std::vector<std::int64_t>& again, MPI_Comm comm);
 
   std::unique_ptr<Open> open_;
   std::vector<std::uint8_t> done_, tries_;

@@ -3,21 +3,27 @@
 #include <algorithm>
 #include <array>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 namespace rodsweep {
 namespace {
+
+/// Which files have a column: all, or results files but not models.
+enum class Files { all, results };
 
 struct RunColumn {
   const char* path;
   std::variant<std::string& (*)(RunRow&), int& (*)(RunRow&), bool& (*)(RunRow&), double& (*)(RunRow&)> value;
   std::int64_t text_bytes;  ///< 0: a number
   const char* meaning;
+  Files files = Files::all;
   const char* unit = "1";
 };
 
+constexpr const char* begin_path = "/runs/begin";
 constexpr std::array<RunColumn, 15> run_columns{{
-    {"/runs/begin", [](RunRow& run) -> std::string& { return run.provenance.begin_utc; }, 24,
+    {begin_path, [](RunRow& run) -> std::string& { return run.provenance.begin_utc; }, 24,
      "start of the run (UTC); empty: unused row"},
     {"/runs/end", [](RunRow& run) -> std::string& { return run.end_utc; }, 24,
      "end of the run (UTC); empty: it still runs, or was killed"},
@@ -32,16 +38,16 @@ constexpr std::array<RunColumn, 15> run_columns{{
     {"/runs/petsc_options", [](RunRow& run) -> std::string& { return run.provenance.petsc_options; }, 1024,
      "PETSC_OPTIONS of the environment"},
     {"/runs/source", [](RunRow& run) -> std::string& { return run.source; }, 512,
-     "file that this row was copied from (merge, --extend); empty: a run of this sweep"},
+     "file that this row was copied from (merge, --extend); empty: a run of this sweep", Files::results},
     {"/runs/ranks", [](RunRow& run) -> int& { return run.provenance.ranks; }, 0, "MPI ranks"},
     {"/runs/shard", [](RunRow& run) -> int& { return run.provenance.shard; }, 0,
-     "number of the shard, from 1; 0: the whole sweep"},
+     "number of the shard, from 1; 0: the whole sweep", Files::results},
     {"/runs/shards", [](RunRow& run) -> int& { return run.provenance.shards; }, 0,
-     "number of shards; 0: the whole sweep"},
+     "number of shards; 0: the whole sweep", Files::results},
     {"/runs/exit_code", [](RunRow& run) -> int& { return run.exit_code; }, 0,
      "exit code of the program; -1: it still runs, or was killed"},
     {"/runs/left_s", [](RunRow& run) -> double& { return run.left_s; }, 0,
-     "time left at the last heartbeat of the run, by its own estimate; NaN: unknown", "s"},
+     "time left at the last heartbeat of the run, by its own estimate; NaN: unknown", Files::results, "s"},
     {"/runs/oversubscribed", [](RunRow& run) -> bool& { return run.provenance.oversubscribed; }, 0,
      "1: more ranks than cores; times are not valid"},
 }};
@@ -63,6 +69,16 @@ void visit_value(const RunColumn& column, RunRow& run, OnText&& on_text, OnNumbe
       column.value);
 }
 
+void read_column(const RunColumn& column, const hdf5::RowDataset& rows, std::vector<RunRow>& runs) {
+  for (std::size_t row = 0; row < runs.size(); ++row)
+    visit_value(
+        column, runs[row], [&](std::string& text) { text = hdf5::read_text_row(rows, row); },
+        [&](auto& number) {
+          using T = std::decay_t<decltype(number)>;
+          number = static_cast<T>(hdf5::read_row<Stored<T>>(rows, row));
+        });
+}
+
 }  // namespace
 
 std::vector<Field> run_fields() {
@@ -81,20 +97,10 @@ std::vector<Field> run_fields() {
 }
 
 std::vector<RunRow> read_runs(const hdf5::File& file) {
-  const std::vector<std::string> begins = hdf5::read_texts(file.id(), "/runs/begin");
+  const std::vector<std::string> begins = hdf5::read_texts(file.id(), begin_path);
   std::vector<RunRow> runs(static_cast<std::size_t>(std::find(begins.begin(), begins.end(), "") - begins.begin()));
-  for (const RunColumn& column : run_columns) {
-    const hdf5::RowDataset rows(file.id(), column.path);
-    if (!rows) continue;
-    for (std::size_t row = 0; row < runs.size(); ++row) {
-      visit_value(
-          column, runs[row], [&](std::string& text) { text = hdf5::read_text_row(rows, row); },
-          [&](auto& number) {
-            using T = std::decay_t<decltype(number)>;
-            number = static_cast<T>(hdf5::read_row<Stored<T>>(rows, row));
-          });
-    }
-  }
+  for (const RunColumn& column : run_columns)
+    if (const hdf5::RowDataset rows(file.id(), column.path); rows) read_column(column, rows, runs);
   return runs;
 }
 
@@ -108,6 +114,33 @@ void write_run(const hdf5::File& file, std::size_t row, const RunRow& run) {
           hdf5::write_row(file.id(), column->path, row, static_cast<Stored<decltype(number)>>(number));
         });
   }
+}
+
+void create_training_runs(hid_t file, std::vector<RunRow> runs) {
+  for (const RunColumn& column : run_columns) {
+    if (column.files == Files::results) continue;
+    std::visit(
+        [&](auto of) {
+          std::vector<Stored<std::decay_t<decltype(of(std::declval<RunRow&>()))>>> values;
+          for (RunRow& run : runs) values.push_back(of(run));
+          if constexpr (std::is_same_v<decltype(values), std::vector<std::string>>)
+            hdf5::store_texts(file, column.path, values);
+          else
+            hdf5::store(file, column.path, {runs.size()}, values, column.unit, column.meaning);
+        },
+        column.value);
+  }
+}
+
+std::vector<RunRow> read_training_runs(hid_t file) {
+  std::vector<RunRow> runs(hdf5::read_texts(file, begin_path).size());
+  for (const RunColumn& column : run_columns) {
+    if (column.files == Files::results) continue;
+    const hdf5::RowDataset rows(file, column.path);
+    if (!rows) throw Damage(std::string(column.path) + " is missing");
+    read_column(column, rows, runs);
+  }
+  return runs;
 }
 
 }  // namespace rodsweep

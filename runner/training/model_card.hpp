@@ -27,13 +27,6 @@ enum class Ending {
   diverged   ///< a loss is not finite
 };
 
-/// One run of the program that trained.
-struct TrainingRunRow {
-  Provenance provenance;
-  std::string end_utc;  ///< empty: still running or killed
-  int exit_code = -1;   ///< -1: still running or killed
-};
-
 /// CG ratios on the validation simulations of one scene type.
 struct SceneRatios {
   std::string scene;  ///< scene type
@@ -57,7 +50,7 @@ struct ModelCard {
   std::int64_t ratio_simulations = 0;
   std::vector<SceneRatios> scenes;  ///< the same by scene type; empty if there is only one
 
-  std::vector<TrainingRunRow> runs;
+  std::vector<RunRow> runs;
 };
 
 /// The epoch of the model's weights. Requires best_epoch > 0.

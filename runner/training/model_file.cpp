@@ -6,6 +6,7 @@
 
 #include "runner/file/file_reading.hpp"
 #include "runner/file/hdf5.hpp"
+#include "runner/file/runs.hpp"
 #include "runner/specs/training_job.hpp"
 #include "runner/text/checksum.hpp"
 #include "runner/training/model_layout.hpp"
@@ -15,44 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-template <class Values>
-void write(hid_t file, const std::string& path, const std::vector<hsize_t>& extent, const Values& values,
-           const char* unit, const char* meaning) {
-  const hid_t type = hdf5::type_of<typename Values::value_type>();
-  const hdf5::Dataset dataset = hdf5::create_dataset(file, path, type, extent);
-  hdf5::check(H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite", path);
-  hdf5::write_attribute(dataset.id(), "unit", unit);
-  hdf5::write_attribute(dataset.id(), "meaning", meaning);
-}
-
-void write_texts(hid_t file, const std::string& path, const std::vector<std::string>& texts) {
-  std::size_t bytes = 1;
-  for (const std::string& text : texts) bytes = std::max(bytes, text.size());
-  hdf5::create_dataset(file, path, hdf5::text_type(bytes).id(), {texts.size()});
-  hdf5::write_texts(file, path, texts);
-}
-
 hdf5::Object open_group(hid_t file, const char* path) {
   return hdf5::Object(hdf5::check(H5Oopen(file, path, H5P_DEFAULT), "H5Oopen", path));
-}
-
-void write_runs(hid_t file, std::vector<TrainingRunRow> runs) {
-  for (const RunPlace& place : run_places) {
-    std::vector<std::string> texts;
-    for (TrainingRunRow& run : runs) texts.push_back(place.of(run));
-    write_texts(file, place.path, texts);
-  }
-  std::vector<std::int32_t> ranks, exit_codes;
-  std::vector<std::uint8_t> oversubscribed;
-  for (const TrainingRunRow& run : runs) {
-    ranks.push_back(run.provenance.ranks);
-    exit_codes.push_back(run.exit_code);
-    oversubscribed.push_back(run.provenance.oversubscribed ? 1 : 0);
-  }
-  const std::vector<hsize_t> rows{runs.size()};
-  write(file, "/runs/ranks", rows, ranks, "1", "processes");
-  write(file, "/runs/exit_code", rows, exit_codes, "1", "exit code of the program; -1: it still runs, or was killed");
-  write(file, "/runs/oversubscribed", rows, oversubscribed, "1", "1: more ranks than cores; times are not valid");
 }
 
 void write_epochs(hid_t file, const ModelCard& card) {
@@ -60,24 +25,25 @@ void write_epochs(hid_t file, const ModelCard& card) {
   for (const EpochPlace& place : epoch_places) {
     std::vector<double> values;
     for (const Epoch& epoch : card.epochs) values.push_back(epoch.*place.member);
-    write(file, place.path, {rows}, values, place.unit, place.meaning);
+    hdf5::store(file, place.path, {rows}, values, place.unit, place.meaning);
   }
   std::vector<double> ratios;
   for (const Epoch& epoch : card.epochs) ratios.insert(ratios.end(), epoch.cg_ratio.begin(), epoch.cg_ratio.end());
-  write(file, epoch_ratio_path, {rows, ValidationRatio::tolerance_count}, ratios, "1",
-        "CG iterations over those from zero, mean over validation simulations; NaN: not measured after this epoch");
+  hdf5::store(
+      file, epoch_ratio_path, {rows, ValidationRatio::tolerance_count}, ratios, "1",
+      "CG iterations over those from zero, mean over validation simulations; NaN: not measured after this epoch");
 }
 
 void write_scenes(hid_t file, const std::vector<SceneRatios>& scenes) {
   if (scenes.empty()) return;
   std::vector<std::string> types;
   for (const SceneRatios& of : scenes) types.push_back(of.scene);
-  write_texts(file, scene_types_path, types);
+  hdf5::store_texts(file, scene_types_path, types);
   for (const ScenePlace& place : scene_places) {
     std::vector<double> ratios;
     for (const SceneRatios& of : scenes)
       ratios.insert(ratios.end(), (of.*place.member).begin(), (of.*place.member).end());
-    write(file, place.path, {scenes.size(), ValidationRatio::tolerance_count}, ratios, "1", place.meaning);
+    hdf5::store(file, place.path, {scenes.size(), ValidationRatio::tolerance_count}, ratios, "1", place.meaning);
   }
 }
 
@@ -86,15 +52,15 @@ void write_card(hid_t file, const ModelCard& card) {
   hdf5::write_attribute(file, "schema_version", model_schema_version);
   hdf5::write_attribute(file, "kind", "model");
   hdf5::write_attribute(file, "title", "rodsweep model: " + card.name);
-  write_texts(file, "/job/text", {card.job_text});
-  write_texts(file, "/data/path", {card.data_path});
-  write_texts(file, "/data/hash", {card.data_hash});
-  write_runs(file, card.runs);
-  write(file, "/axes/tolerance", {ValidationRatio::tolerance_count}, ValidationRatio::tolerances(), "1",
-        "tolerances of CG, relative to ||b||");
+  hdf5::store_texts(file, "/job/text", {card.job_text});
+  hdf5::store_texts(file, "/data/path", {card.data_path});
+  hdf5::store_texts(file, "/data/hash", {card.data_hash});
+  create_training_runs(file, card.runs);
+  hdf5::store(file, "/axes/tolerance", {ValidationRatio::tolerance_count}, ValidationRatio::tolerances(), "1",
+              "tolerances of CG, relative to ||b||");
   write_epochs(file, card);
   for (const RatioPlace& place : ratio_places)
-    write(file, place.path, {ValidationRatio::tolerance_count}, card.*place.member, "1", place.meaning);
+    hdf5::store(file, place.path, {ValidationRatio::tolerance_count}, card.*place.member, "1", place.meaning);
   write_scenes(file, card.scenes);
   for (const CountPlace& place : count_places)
     hdf5::write_attribute(open_group(file, place.group).id(), place.name,
@@ -111,13 +77,14 @@ void write_scale(hid_t file, const std::string& folder, const Normalisation& sca
   const std::vector<hsize_t> extent{static_cast<hsize_t>(scale.mean.size())};
   const std::vector<float> mean(scale.mean.begin(), scale.mean.end());
   const std::vector<float> deviation(scale.deviation.begin(), scale.deviation.end());
-  write(file, folder + "mean", extent, mean, "", "in the unit of each feature (network/encoding/graph_encoding.hpp)");
-  write(file, folder + "deviation", extent, deviation, "", "input of the network: (feature - mean) / deviation");
+  hdf5::store(file, folder + "mean", extent, mean, "",
+              "in the unit of each feature (network/encoding/graph_encoding.hpp)");
+  hdf5::store(file, folder + "deviation", extent, deviation, "", "input of the network: (feature - mean) / deviation");
 }
 
 void write_model(hid_t file, const Model& model) {
   const CopingNetSettings& settings = model.net.settings();
-  write_texts(file, "/model/settings", {network_json(settings).dump()});
+  hdf5::store_texts(file, "/model/settings", {network_json(settings).dump()});
   const Parameters<float>& parameters = model.net.parameters();
   for (std::size_t i = 0; i < parameters.entries().size(); ++i) {
     const auto& entry = parameters.entries()[i];
@@ -136,14 +103,14 @@ void write_model(hid_t file, const Model& model) {
 
 void write_checkpoint(hid_t file, const Checkpoint& checkpoint) {
   const std::vector<hsize_t> extent{checkpoint.weights.size()};
-  write(file, "/checkpoint/weights", extent, checkpoint.weights, "1", "current weights, padding included");
-  write(file, "/checkpoint/mean", extent, checkpoint.optimiser.mean, "1", "Adam's mean of gradients");
-  write(file, "/checkpoint/square", extent, checkpoint.optimiser.square, "1", "Adam's mean of their squares");
-  write(file, "/checkpoint/step", {1}, std::vector<std::int64_t>{checkpoint.optimiser.step}, "1", "steps taken");
-  write(file, "/checkpoint/epoch_loss", {1}, std::vector<double>{checkpoint.epoch_loss}, "1",
-        "sum of the step losses in the current epoch");
-  write(file, "/checkpoint/epoch_s", {1}, std::vector<double>{checkpoint.epoch_seconds}, "s",
-        "time spent on the current epoch");
+  hdf5::store(file, "/checkpoint/weights", extent, checkpoint.weights, "1", "current weights, padding included");
+  hdf5::store(file, "/checkpoint/mean", extent, checkpoint.optimiser.mean, "1", "Adam's mean of gradients");
+  hdf5::store(file, "/checkpoint/square", extent, checkpoint.optimiser.square, "1", "Adam's mean of their squares");
+  hdf5::store(file, "/checkpoint/step", {1}, std::vector<std::int64_t>{checkpoint.optimiser.step}, "1", "steps taken");
+  hdf5::store(file, "/checkpoint/epoch_loss", {1}, std::vector<double>{checkpoint.epoch_loss}, "1",
+              "sum of the step losses in the current epoch");
+  hdf5::store(file, "/checkpoint/epoch_s", {1}, std::vector<double>{checkpoint.epoch_seconds}, "s",
+              "time spent on the current epoch");
 }
 
 }  // namespace

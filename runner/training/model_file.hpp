@@ -17,8 +17,8 @@
 #include <optional>
 
 #include "network/processor/model.hpp"
+#include "network/training/trainer.hpp"
 #include "runner/file/unfinished_file.hpp"
-#include "runner/training/checkpoint.hpp"
 #include "runner/training/model_card.hpp"
 
 namespace rodsweep {
@@ -27,6 +27,14 @@ inline constexpr int model_schema_version = 2;
 
 /// A hash of settings, weights and scales: sixteen hexadecimal digits.
 std::string model_hash(const Model& model);
+
+/// The state needed to resume a training exactly, in addition to the best model and the finished epochs.
+struct Checkpoint {
+  AlignedVector<float> weights;
+  Trainer::State optimiser;
+  double epoch_loss = 0;     ///< sum of the losses of the current epoch's steps
+  double epoch_seconds = 0;  ///< time spent on the current epoch
+};
 
 struct StoredModel {
   std::shared_ptr<Model> model;

@@ -63,22 +63,6 @@ inline constexpr std::array<ScenePlace, 2> scene_places{{
     {"/validation/scenes/base_cg_ratio", "the same for the model's base guess alone", &SceneRatios::base_cg_ratio},
 }};
 
-/// Text columns with one row per run.
-struct RunPlace {
-  const char* path;
-  std::string& (*of)(TrainingRunRow&);
-};
-inline constexpr std::array<RunPlace, 8> run_places{{
-    {"/runs/begin", [](TrainingRunRow& run) -> std::string& { return run.provenance.begin_utc; }},
-    {"/runs/end", [](TrainingRunRow& run) -> std::string& { return run.end_utc; }},
-    {"/runs/host", [](TrainingRunRow& run) -> std::string& { return run.provenance.host; }},
-    {"/runs/job", [](TrainingRunRow& run) -> std::string& { return run.provenance.job; }},
-    {"/runs/command", [](TrainingRunRow& run) -> std::string& { return run.provenance.user_command; }},
-    {"/runs/revision", [](TrainingRunRow& run) -> std::string& { return run.provenance.revision; }},
-    {"/runs/versions", [](TrainingRunRow& run) -> std::string& { return run.provenance.versions; }},
-    {"/runs/petsc_options", [](TrainingRunRow& run) -> std::string& { return run.provenance.petsc_options; }},
-}};
-
 /// The names of the endings in the file.
 inline constexpr std::array<std::pair<Ending, const char*>, 4> endings{
     {{Ending::none, "none"}, {Ending::complete, "complete"}, {Ending::early, "early"}, {Ending::diverged, "diverged"}}};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runner/file/file_reading.hpp"
+#include "runner/file/runs.hpp"
 #include "runner/keys/job_reader.hpp"
 #include "runner/specs/training_job.hpp"
 #include "runner/text/strict_json.hpp"
@@ -72,23 +73,6 @@ std::shared_ptr<Model> read_network(hid_t file, const fs::path& path) {
   return model;
 }
 
-std::vector<TrainingRunRow> read_runs(hid_t file) {
-  const auto ranks = hdf5::read_all<std::int32_t>(file, "/runs/ranks");
-  const auto exit_codes = read<std::int32_t>(file, "/runs/exit_code", {ranks.size()});
-  const auto oversubscribed = read<std::uint8_t>(file, "/runs/oversubscribed", {ranks.size()});
-  std::vector<TrainingRunRow> runs(ranks.size());
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    runs[i].provenance.ranks = ranks[i];
-    runs[i].exit_code = exit_codes[i];
-    runs[i].provenance.oversubscribed = oversubscribed[i] != 0;
-  }
-  for (const RunPlace& place : run_places) {
-    const std::vector<std::string> texts = hdf5::read_texts(file, place.path);
-    for (std::size_t i = 0; i < runs.size(); ++i) place.of(runs[i]) = texts.at(i);
-  }
-  return runs;
-}
-
 std::vector<Epoch> read_epochs(hid_t file) {
   constexpr std::size_t columns = ValidationRatio::tolerance_count;
   std::vector<Epoch> epochs(hdf5::read_all<double>(file, epoch_places.front().path).size());
@@ -137,7 +121,7 @@ ModelCard read_card(hid_t file) {
   if (ending == endings.end()) throw Damage(fmt::format("\"{}\" is not an ending of a training", word));
   card.ending = ending->first;
   card.message = hdf5::read_text_attribute(file, "/training", "message");
-  card.runs = read_runs(file);
+  card.runs = read_training_runs(file);
   return card;
 }
 

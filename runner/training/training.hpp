@@ -9,8 +9,8 @@
 
 #include "network/processor/model.hpp"
 #include "network/training/trainer.hpp"
-#include "runner/training/checkpoint.hpp"
 #include "runner/training/model_card.hpp"
+#include "runner/training/model_file.hpp"
 #include "runner/training/shard_exchange.hpp"
 #include "runner/training/training_data.hpp"
 

@@ -97,6 +97,22 @@ class Interrupted(InterruptedCase):
         self.assertIn("-o full.h5 --resume", stderr)
         self.resume("full.h5", 3)
 
+    def test_a_heartbeat_that_fails_is_a_warning(self):
+        full = os.path.abspath("full_for_a_while")
+
+        def fill_for_a_while(_):
+            open(full, "w").close()
+            time.sleep(1.5)  # at least one heartbeat
+            os.remove(full)
+
+        self.sweep(long_job("beating", 400))
+        failing = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_RANK": "0", "FAIL_FILE": full}
+        with unittest.mock.patch.dict(os.environ, failing):
+            code, _, stderr = self.interrupt("beating.h5", 3, fill_for_a_while)
+        self.assertEqual(code, ALL_DONE, stderr)
+        self.assertEqual(stderr.count("the heartbeat failed: H5Dwrite failed"), 1, stderr)
+        self.assert_same_results(self.whole, "beating.h5")
+
 
 class Signalled(InterruptedCase):
     def assert_stopped(self, name, ranks, hit):

@@ -41,7 +41,7 @@ ModelCard some_card() {
   card.ratio_simulations = 50;
   card.scenes = {{"helix", {0.1, 0.3, 0.5, 0.7}, {0.2, 0.4, 0.6, 0.8}}, {"knot", {0, 0, 0, 1}, {1, 1, 1, 1}}};
   card.runs = {{test_provenance(), "2025-11-21T16:05:09Z", 4}, {test_provenance(), "", -1}};
-  for (TrainingRunRow& run : card.runs) run.provenance.begin_utc = "2026-01-02T03:04:05Z";  // a fixed time
+  for (RunRow& run : card.runs) run.provenance.begin_utc = "2026-01-02T03:04:05Z";  // a fixed time
   card.runs[1].provenance.oversubscribed = true;
   return card;
 }
@@ -88,11 +88,11 @@ void check_same(const ModelCard& a, const ModelCard& b) {
     CHECK(std::isnan(a.epochs[i].cg_ratio[3]) == std::isnan(b.epochs[i].cg_ratio[3]));
   }
   CHECK(a.epochs.back().cg_ratio == b.epochs.back().cg_ratio);
-  const auto fields = [](const TrainingRunRow& s) {
+  const auto fields = [](const RunRow& s) {
     return std::tie(s.end_utc, s.exit_code, s.provenance.begin_utc, s.provenance.versions, s.provenance.ranks,
                     s.provenance.oversubscribed);
   };
-  const auto same_run = [&](const TrainingRunRow& x, const TrainingRunRow& y) { return fields(x) == fields(y); };
+  const auto same_run = [&](const RunRow& x, const RunRow& y) { return fields(x) == fields(y); };
   CHECK(std::equal(a.runs.begin(), a.runs.end(), b.runs.begin(), b.runs.end(), same_run));
 }
 
