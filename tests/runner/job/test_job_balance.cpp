@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "tests/runner/refused_jobs.hpp"
+#include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
 namespace test_job_balance {
@@ -23,18 +23,6 @@ TEST_CASE("steps are the paper's unless they are to keep the balance, which may 
   CHECK(std::get<ColumnValues<std::int64_t>>(column->values).all().front() == 0);
   CHECK(std::get<ColumnValues<std::int64_t>>(column->values).all().back() == 1);
   CHECK_FALSE(plan_of(without("/guesses", with("/solve", R"({"method": "direct"})"))).spec(0).time.balance);
-}
-
-TEST_CASE("the balance is refused where no linear system could hold it") {
-  check_refused({
-      {with("/time/balance", "1"), "time.balance: 1 ", "must be true or false"},
-      {with("/time/balance", R"({"uniform": [0, 1]})"), "time.balance"},
-      {with("/time/momentum_tolerance", "0"), "time.momentum_tolerance: 0 is not allowed"},
-  });
-  const Json closed = with("/evaluation", "\"closed_loop\"", without("/guesses", with("/time/balance", "true")));
-  for (const std::string method : {"pbd", "xpbd"})
-    check_refused({{with("/solve", R"({"method": ")" + method + "\"}", closed), "time.balance: true ",
-                    "solve.method \"" + method + "\"", "must be used with \"direct\" or \"cg\""}});
 }
 
 TEST_CASE("data sets have what the balance is kept against, where any task keeps it") {

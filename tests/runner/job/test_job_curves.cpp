@@ -7,7 +7,6 @@
 #include "runner/measure/factor_check.hpp"
 #include "runner/plan/scene_spec.hpp"
 #include "tests/runner/job_folder.hpp"
-#include "tests/runner/refused_jobs.hpp"
 
 namespace rodsweep {
 namespace test_job_curves {
@@ -96,20 +95,6 @@ TEST_CASE("loads, motions and changes of gravity are read, and their values may 
   CHECK(other.gravity.at(0).by_m_s2 == Vector3(0, 9.81, 0));
   const Prescribed nothing = rod_parameters(plan_of(small_job()).spec(0).scene).prescribed;
   CHECK((nothing.loads.empty() && nothing.motions.empty() && nothing.gravity.empty()));
-}
-
-TEST_CASE("loads that a job cannot mean are refused with what is allowed") {
-  check_refused({
-      {with("/scene/loads", R"([{"force_n": [0, -1, 0]}])"),
-       "scene.loads[0].at_m: missing: point of a rod at the start [m]"},
-      {with("/scene/loads", R"([{"at_m": [0, 0, 0], "forces": 1}])"), "scene.loads[0].forces: unknown key",
-       "\"force_n\""},
-      {with("/scene/loads", R"([{"at_m": [1, 0, 0], "times_s": [0]}])"),
-       "scene: loads[0]: times_s has 1 values, factors 0"},
-      {with("/scene/motions", R"([{"at_m": [0, 0, 0], "displacement_m": [1, 0, 0]}])"),
-       "scene: motions[0]: begins with the factor 1"},
-      {with("/scene/loads", R"({"at_m": [0, 0, 0]})"), "scene.loads: ", "a list [...]"},
-  });
 }
 
 }  // namespace test_job_curves

@@ -2,25 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "runner/file/record.hpp"
-#include "tests/runner/refused_jobs.hpp"
+#include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;
-
-TEST_CASE("a data set has no keys of guesses and solves, a sweep no systems: they are refused with what to do") {
-  const std::string sweeps = "belongs to kind \"sweep\", not to \"dataset\"", advice = "remove this key";
-  check_refused({
-      {with("/solve", R"({"method": "direct"})", data_job()), "solve: ", sweeps, advice},
-      {with("/guesses", R"(["zero"])", data_job()), "guesses: ", sweeps, advice},
-      {with("/evaluation", "\"paired\"", data_job()), "evaluation: ", sweeps, advice},
-      {with("/record", R"({"norms": "one"})", data_job()), "record.norms: ", sweeps, advice},
-      {with("/record", R"({"systems": "none"})", data_job()), "record.systems: \"none\" ", "\"first\", \"all\""},
-      {with("/record", R"({"system": "all"})", data_job()), "record.system: unknown key", "did you mean \"systems\"?"},
-      {with("/record", R"({"systems": "all"})"), "record.systems: ", "\"dataset\", not to \"sweep\"",
-       "use a job of kind \"dataset\""},
-  });
-  CHECK(refusal(data_job()).empty());
-  CHECK(refusal(with("/record", R"({"systems": "all"})", data_job())).empty());
-}
 
 TEST_CASE("a data set is simulated with the direct solve and no guesses") {
   const Plan plan = plan_of(data_job());

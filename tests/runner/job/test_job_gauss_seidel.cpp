@@ -1,7 +1,7 @@
 // Jobs with Gauss-Seidel instead of linear solves.
 #include <catch2/catch.hpp>
 
-#include "tests/runner/refused_jobs.hpp"
+#include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
 namespace test_job_gauss_seidel {
@@ -45,31 +45,6 @@ TEST_CASE("iterations and stiffness are part of what a trajectory is") {
   CHECK(trajectory(R"({"method": "xpbd"})") == trajectory(R"({"method": "xpbd", "iterations": 20})"));
   CHECK(trajectory(R"({"method": "xpbd"})") != trajectory(R"({"method": "xpbd", "iterations": 21})"));
   CHECK(trajectory(R"({"method": "pbd"})") != trajectory(R"({"method": "pbd", "bending_stiffness": 0.5})"));
-}
-
-TEST_CASE("keys of Gauss-Seidel are refused out of bounds and with other methods") {
-  check_refused({
-      {by(R"({"method": "xpbd", "iterations": 0})"), "solve.iterations: 0 ", "must be an integer from 1 to 10000"},
-      {by(R"({"method": "pbd", "stretch_stiffness": 1.5})"), "solve.stretch_stiffness: 1.5 ", "a number from 0 to 1"},
-      {by(R"({"method": "pbd", "bending_stiffness": -1})"), "solve.bending_stiffness: -1 ", "a number from 0 to 1"},
-      {with("/solve", R"({"iterations": 5})"), "solve.iterations: ", "\"xpbd\" or \"pbd\", not to \"cg\"",
-       "use max_iterations for cg, time.newton_iterations for Newton"},
-      {by(R"({"method": "xpbd", "stretch_stiffness": 1})"), "solve.stretch_stiffness: ", "\"pbd\", not to \"xpbd\"",
-       "moduli and stretch_compliance_per_j of the scene"},
-      {by(R"({"method": "xpbd", "bending_stiffness": 1})"), "solve.bending_stiffness: ", "\"pbd\", not to \"xpbd\"",
-       "moduli of the scene"},
-  });
-}
-
-TEST_CASE("Gauss-Seidel is refused where the direct solve advances the rod, and with guesses") {
-  for (const std::string method : {"pbd", "xpbd"}) {
-    const Json job = with("/solve", R"({"method": ")" + method + "\"}");
-    check_refused({
-        {without("/guesses", job), "solve.method: \"" + method + "\" ", "evaluation \"paired\"",
-         "must be used with \"closed_loop\""},
-        {job, "guesses: only solve.method \"cg\" uses initial guesses"},
-    });
-  }
 }
 
 }  // namespace test_job_gauss_seidel

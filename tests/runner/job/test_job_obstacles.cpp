@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "tests/runner/refused_jobs.hpp"
+#include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
 namespace test_job_obstacles {
@@ -70,40 +70,6 @@ TEST_CASE("values of obstacles, whole ones and whole lists of them are swept") {
   CHECK(std::holds_alternative<HalfSpace>(scene_of(kinds, 0).obstacles.at(0)));
   CHECK(std::holds_alternative<Capsule>(scene_of(kinds, 1).obstacles.at(0)));
   CHECK(texts(kinds, "scene.obstacles[0]") == std::vector<std::string>{"half_space", "capsule"});
-}
-
-TEST_CASE("obstacles that nothing can touch are refused, but not where contact is swept") {
-  const std::string without_contact = "rods without \"contact\" pass through obstacles";
-  const std::string advice = "\"contact\": {\"friction\": 0.3}, or remove this key";
-  const Json untouched = with("/scene/obstacles", R"([{"half_space": {}}])");
-  Json scenes = small_job();
-  scenes["scene"] = grid({bending_scene(), untouched["scene"]});
-  check_refused({
-      {untouched, "scene.obstacles: ", without_contact, advice},
-      {with("/scene/obstacles", R"({"grid": [[], [{"half_space": {}}]]})"), "scene.obstacles: ", without_contact,
-       advice},
-      {scenes, "scene.grid[1].obstacles: ", without_contact, advice},
-  });
-  CHECK(refusal(with("/scene/obstacles", "[]")).empty());
-  CHECK(refusal(with("/scene/obstacles", R"({"grid": [[], {"zip": [[], []]}]})")).empty());
-  CHECK(refusal(with("/scene/contact", R"({"grid": ["none", {}]})", untouched)).empty());
-}
-
-TEST_CASE("obstacles that are none are refused with what is wrong") {
-  const std::string one_of = "an object {...} with one of \"half_space\", \"ball\", \"capsule\"";
-  check_refused({
-      {job_with(R"({"ball": {"centre_m": [0, 0, 0], "radius_m": 1}})"), "scene.obstacles: {\"ball\":{", "a list [...]",
-       one_of},
-      {job_with(R"([{"bal": {"centre_m": [0, 0, 0], "radius_m": 1}}])"), "scene.obstacles[0].bal: unknown key",
-       "did you mean \"ball\"?"},
-      {job_with(R"([{"half_space": {}, "ball": {}}])"), "scene.obstacles[0]: {\"half_space\":{},\"ball\":{}} ", one_of},
-      {job_with(R"([{"half_space": {}}, {"ball": {"centre_m": [0, 0, 0]}}])"),
-       "scene.obstacles[1].ball.radius_m: missing"},
-      {job_with(R"([{"ball": {"centre_m": [0, 0, 0], "radius_m": 0}}])"),
-       "scene.obstacles[0].ball.radius_m: 0 is not allowed"},
-      {job_with(R"([{"half_space": {"normal": [0, 0, 0]}}])"), "scene.obstacles[0].half_space.normal: [0, 0, 0] ",
-       "must have a direction"},
-  });
 }
 
 }  // namespace test_job_obstacles

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "runner/specs/training_job.hpp"
-#include "tests/runner/refused_jobs.hpp"
+#include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;
 
@@ -12,14 +12,6 @@ using Paths = std::vector<std::filesystem::path>;
 
 TrainingJob training_of(const Job& job) { return training_job(job.values, job.path); }
 TrainingJob training_of(const Json& job) { return training_of(job_of(job)); }
-
-/// The training job with the JSON text `value` at `pointer`.
-Json training_with(const std::string& pointer, const std::string& value) {
-  Json job = train_job();
-  job["network"] = Json::object();
-  job["training"] = Json::object();
-  return with(pointer, value, job);
-}
 
 TEST_CASE("the least that a training says is where its data are") {
   const TrainingJob job = training_of(train_job());
@@ -85,62 +77,6 @@ TEST_CASE("every key of a training arrives where it belongs") {
   CHECK(job.ratio_simulations == 6);
 }
 
-TEST_CASE("nothing of a training is swept") {
-  const std::string advice = "this key cannot be swept; a job trains one model";
-  check_refused({
-      {training_with("/training/rate", R"({"grid": [0.1, 0.2]})"), "training.rate: ", advice},
-      {training_with("/network", R"({"grid": [{}, {"latent": 16}]})"), "network: ", advice},
-      {training_with("/data", R"({"grid": ["a.h5", "b.h5"]})"), "data: ", advice},
-  });
-}
-
-TEST_CASE("keys of simulations are refused with where a training has its own from, and the reverse") {
-  check_refused({
-      {with("/scene", bending_scene().dump(), train_job()), "scene: ", "\"sweep\" or \"dataset\", not to \"train\"",
-       "remove this key"},
-      {with("/guesses", R"(["zero"])", train_job()), "guesses: ", "\"sweep\", not to \"train\"", "remove this key"},
-      {with("/network", "{}"), "network: ", "\"train\", not to \"sweep\""},
-  });
-}
-
-TEST_CASE("missing, misspelt and impossible values of a training are refused") {
-  check_refused({
-      {without("/data", train_job()), "data: missing: training data",
-       "a string of 1 to 4000 characters on one line, or a non-empty list of these"},
-      {training_with("/data", "[]"), "data: ", "or a non-empty list of these"},
-      {training_with("/data", R"(["a.h5", 5])"), "data[1]: 5 is not allowed"},
-      {training_with("/training/epoch", "3"), "training.epoch: unknown key", "did you mean \"epochs\"?"},
-      {training_with("/training/lr", "3"), "training.lr: unknown key", "did you mean \"rate\"?"},
-      {training_with("/training/rate", "0"), "training.rate: 0 ", "must be a number above 0 and at most 1"},
-      {training_with("/training/epochs", "0"), "training.epochs: 0 ", "must be an integer from 1 to 1000000"},
-      {training_with("/network/best_length", "1"), "network.best_length: 1 ", "must be true or false"},
-      {training_with("/network/encoding", "\"papers\""), "network.encoding: \"papers\" ",
-       "\"paper\", \"paper_residual\", \"linear_system\", \"state\"", "did you mean \"paper\"?"},
-  });
-}
-
-TEST_CASE("keys that the network or the loss has no use for are refused, also where its kind is the default") {
-  const std::string not_factors = "network.processor \"message_passing\", not to \"factors\"";
-  check_refused({
-      {training_with("/network/moves", "true"), "network.moves: ", not_factors, "factors work only on joints"},
-      {training_with("/network", R"({"processor": "factors", "steps": 3})"), "network.steps: ", not_factors},
-      {training_with("/training/cg_steps", "3"), "training.cg_steps: ", "\"in_the_loop\", not to \"energy\""},
-  });
-}
-
-TEST_CASE("values that do not go together are refused") {
-  check_refused({
-      {training_with("/training/shards", "5"), "training.shards: 5 ", "a divisor of training.batch, 16"},
-      {training_with("/network/encoding", "\"paper\""), "network.encoding: \"paper\" ",
-       "with network.processor \"factors\""},
-      {training_with("/network/latent", "24"), "network.latent: 24 is not allowed"},
-      {training_with("/network", R"({"processor": "message_passing", "moves": true})"), "network.moves: true ",
-       "with training.loss \"energy\"", "use \"mse\" or remove this key"},
-      {training_with("/training/noisy_copies", "2"), "training.noisy_copies: 2 ", "network.encoding \"linear_system\"",
-       "must be used with \"state\""},
-  });
-}
-
 TEST_CASE("a simulator of states is a network of message passing that learns moves from squares, with noise") {
   Json values = train_job();
   values["network"] =
@@ -150,14 +86,6 @@ TEST_CASE("a simulator of states is a network of message passing that learns mov
   CHECK(job.network.encoding == Encoding::state);
   CHECK(job.copies().count == 3);
   CHECK(job.copies().noise == 0.2);
-  check_refused({
-      {with("/network/base", "\"subspace\"", values), "network.base: \"subspace\" ", "network.encoding \"state\"",
-       "must be \"none\""},
-      {with("/network/moves", "false", values), "network.moves: false"},
-      {with("/training/loss", "\"energy\"", values), "training.loss: \"energy\""},
-      {with("/training/turned_copies", "1", values), "training.turned_copies: 1"},
-      {with("/network", R"({"encoding": "state", "base": "none"})", values), "network.processor: \"factors\""},
-  });
 }
 
 TEST_CASE("the settings of every kind of network are the same after a round trip") {

@@ -111,23 +111,6 @@ TEST_CASE("means of even samples are as exact as docs/jobs.md says") {
   CHECK(gain(Product(), {}, {}, {}) > 2.5);
 }
 
-TEST_CASE("sobol draws depend on seed, sample and key path, not on the number of samples or the grid") {
-  const auto few = drawn(plan_of(job_with("sobol", 5)), "scene.damping_per_s");
-  const auto many = drawn(plan_of(job_with("sobol", 50)), "scene.damping_per_s");
-  CHECK(std::equal(few.begin(), few.end(), many.begin()));
-  CHECK(drawn(plan_of(job_with("sobol", 5, 1)), "scene.damping_per_s") != few);
-  CHECK(drawn(plan_of(job_with("sobol", 5)), "scene.initial_angle_deg") != few);
-
-  Json job = job_with("sobol", 3);
-  job["scene"]["segments"] = grid({4, 5});
-  const auto both = drawn(plan_of(job), "scene.damping_per_s");
-  REQUIRE(both.size() == 6);
-  for (std::size_t k = 0; k < 3; ++k) {
-    CHECK(both[k] == few[k]);
-    CHECK(both[k + 3] == few[k]);
-  }
-}
-
 TEST_CASE("logarithmic and whole draws and components of vectors are even too, pairs of usual keys also together") {
   Json job = job_with("sobol", 64);
   job["scene"]["youngs_modulus_pa"] = {{"log_uniform", {1e4, 1e6}}};
@@ -148,11 +131,6 @@ TEST_CASE("logarithmic and whole draws and components of vectors are even too, p
   CHECK(soft == 32);
   CHECK(low == 32);
   CHECK(short_and_soft == 16);
-}
-
-TEST_CASE("a sampling that is misspelt is refused") {
-  CHECK(refusal(with("/sampling", "\"sobel\"")) ==
-        "job.json: sampling: \"sobel\" is not allowed; must be one of \"random\", \"sobol\"; did you mean \"sobol\"?");
 }
 
 }  // namespace test_sobol
