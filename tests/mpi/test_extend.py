@@ -58,13 +58,6 @@ class ExtendCase(SweepCase):
 
 
 class Extending(ExtendCase):
-    def test_more_samples(self):
-        for sampling in ("random", "sobol"):
-            with self.subTest(sampling=sampling):
-                old = self.old(f"old-{sampling}", sampling=sampling)
-                self.extend(self.new(f"samples-{sampling}", samples=5, sampling=sampling), old, (10, 4, 6),
-                            ranks=(0, 3) if sampling == "random" else (0,))
-
     def test_more_grid_values_inserted_and_a_plain_value_that_becomes_a_grid(self):
         path = self.new("values", segments=(12, 6, 7, 9), record={"trajectory_every": 2, "solves": "all"},
                         time={"step_s": {"grid": [0.01, 0.02]}, "steps": {"grid": [5, 11]}})

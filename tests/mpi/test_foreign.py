@@ -31,13 +31,6 @@ class Foreign(SweepCase):
         self.assertEqual(process.returncode, code, f"{stdout}\n{stderr}")
         self.assertIn(says, stderr)
 
-    def test_a_writer_is_refused_and_the_file_is_whole(self):
-        process = self.begin("written.h5")
-        self.assertNotEqual(write_note("written.h5", locking=True), 0)
-        self.end(process, ALL_DONE)
-        self.assert_whole("written.h5")
-        self.assertEqual(write_note("written.h5", locking=True), 0)
-
     def test_a_run_does_not_begin_on_a_file_that_is_open_for_writing(self):
         self.rodsweep(3, "run", long_job(), "-o", "open.h5")
         code = "import h5py; f = h5py.File('open.h5', 'r+'); print(flush=True); input()"

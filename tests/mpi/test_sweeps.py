@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Sweeps under mpirun, from outside: equal results on any number of ranks and after interruptions, refusals, exits.
+"""Sweeps under mpirun, from outside: equal results on any number of ranks, refusals, exits. For interruptions see
+test_interruptions.py.
 
 Run by CTest in an empty folder, with RODSWEEP, MPIRUN and FAILING_DISK in the environment.
 """
@@ -14,139 +15,21 @@ import unittest.mock
 
 import h5py
 import numpy as np
-from program import ALL_DONE, MPIRUN, RODSWEEP, STOPPED, TASKS_FAILED, TOO_LONG, USER_ERROR, SweepCase, checksum, data_job, \
-    job, kill_all, long_job, ranks_of, rodsweep, start, status, wait_for_tasks
+from program import ALL_DONE, MPIRUN, RODSWEEP, TASKS_FAILED, TOO_LONG, USER_ERROR, SweepCase, checksum, data_job, job, \
+    kill_all, long_job, ranks_of, rodsweep, start, status, wait_for_tasks
 
 
 class RankCounts(SweepCase):
+    """Closed loops: tests/laws/every_run.py."""
+
     def test_results_are_the_same_on_1_2_and_5_ranks(self):
-        path = job()
-        self.rodsweep(0, "run", path, "-o", "alone.h5")
-        self.assert_whole("alone.h5")
-        for ranks in (1, 2, 5):
-            with self.subTest(ranks=ranks):
-                self.rodsweep(ranks, "run", path, "-o", f"{ranks}.h5")
-                self.assert_same_results("alone.h5", f"{ranks}.h5")
-
-    def test_closed_loops_and_data_sets_are_the_same_on_1_2_and_3_ranks(self):
-        for path in (job("closed", evaluation="closed_loop"), data_job()):
-            for ranks in (1, 2, 3):
+        for path in (job(), data_job()):
+            self.rodsweep(0, "run", path, "-o", path + "-alone.h5")
+            self.assert_whole(path + "-alone.h5")
+            for ranks in (1, 2, 5):
                 with self.subTest(path=path, ranks=ranks):
-                    results = f"{ranks}-{path}.h5"
-                    self.rodsweep(ranks, "run", path, "-o", results)
-                    self.assert_whole(results)
-                    self.assert_same_results(f"1-{path}.h5", results)
-
-
-class InterruptedCase(SweepCase):
-    def setUp(self):
-        self.sweep(long_job())
-
-    def sweep(self, path):
-        """Sets the job to interrupt, and runs it once without interruption."""
-        self.job, self.whole = path, path.replace(".json", "-whole.h5")
-        if not os.path.exists(self.whole):
-            self.rodsweep(3, "run", path, "-o", self.whole)
-
-    def interrupt(self, path, ranks, hit):
-        """Starts the sweep, calls hit(process) in its middle; returns exit code and output."""
-        process = start(ranks, "run", self.job, "-o", path)
-        wait_for_tasks(process, path, 4)
-        hit(process)
-        stdout, stderr = process.communicate(timeout=600)
-        return process.returncode, stdout, stderr
-
-    def resume(self, path, ranks):
-        before = status(path)
-        self.assertGreater(before["done"], 0)
-        self.assertGreater(before["pending"], 0)
-        self.rodsweep(ranks, "run", self.job, "-o", path, "--resume")
-        self.assert_same_results(self.whole, path)
-        self.assert_whole(path)
-        starts = status(path)["runs"]
-        self.assertEqual([s["tasks"] for s in starts], [before["done"], before["pending"]])
-        return starts
-
-
-class Interrupted(InterruptedCase):
-    def test_after_a_worker_is_killed(self):
-        code, _, stderr = self.interrupt("worker.h5", 3, lambda p: os.kill(ranks_of(p)[2], signal.SIGKILL))
-        self.assertEqual(code, 128 + signal.SIGKILL)
-        self.assertRegex(stderr, r"mpirun \(SIGTERM\).*--resume")
-        self.assertIsNone(self.resume("worker.h5", 2)[0]["end"])
-
-    def test_after_all_ranks_are_killed(self):
-        self.interrupt("all.h5", 3, kill_all)
-        self.assertIsNone(self.resume("all.h5", 3)[0]["end"])
-
-    def test_a_data_set_after_all_ranks_are_killed(self):
-        # Newton iterations that only take time: the file stays small.
-        self.sweep(data_job("long_data", samples=160, segments=(20,), record={"solves": "summary"},
-                            time={"step_s": 0.02, "steps": 60, "newton_iterations": 60, "newton_tolerance": 0}))
-
-        self.interrupt("killed_data.h5", 3, kill_all)
-        self.resume("killed_data.h5", 2)
-
-    def test_after_a_worker_finds_the_disk_full(self):
-        failing = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_RANK": "2", "FAIL_FILE": os.path.abspath("full")}
-        with unittest.mock.patch.dict(os.environ, failing):
-            code, _, stderr = self.interrupt("full.h5", 3, lambda p: open("full", "w").close())
-        self.assertEqual(code, STOPPED, stderr)
-        self.assertEqual(stderr.count("H5Dwrite failed"), 1, stderr)
-        self.assertIn("error: rank 2 on", stderr)
-        self.assertIn("-o full.h5 --resume", stderr)
-        self.resume("full.h5", 3)
-
-    def test_a_heartbeat_that_fails_is_a_warning(self):
-        full = os.path.abspath("full_for_a_while")
-
-        def fill_for_a_while(_):
-            open(full, "w").close()
-            time.sleep(1.5)  # at least one heartbeat
-            os.remove(full)
-
-        self.sweep(long_job("beating", 400))
-        failing = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_RANK": "0", "FAIL_FILE": full}
-        with unittest.mock.patch.dict(os.environ, failing):
-            code, _, stderr = self.interrupt("beating.h5", 3, fill_for_a_while)
-        self.assertEqual(code, ALL_DONE, stderr)
-        self.assertEqual(stderr.count("the heartbeat failed: H5Dwrite failed"), 1, stderr)
-        self.assert_same_results(self.whole, "beating.h5")
-
-
-class Signalled(InterruptedCase):
-    def assert_stopped(self, name, ranks, hit):
-        path = f"{name}.h5"
-        code, stdout, stderr = self.interrupt(path, ranks, hit)
-        self.assertEqual(code, STOPPED, stderr)
-        self.assertRegex(stdout, r"tasks: \d+ ok, \d+ left")
-        self.assertIn(f"-o {path} --resume", stderr)
-        self.assertEqual(self.resume(path, 3)[0]["exit_code"], STOPPED)
-        return stderr
-
-    def test_after_a_signal_to_one_rank(self):
-        for rank, number in ((0, signal.SIGTERM), (1, signal.SIGUSR1)):
-            with self.subTest(rank=rank):
-                self.assert_stopped(f"rank{rank}", 3, lambda p: os.kill(ranks_of(p)[rank], number))
-
-    def test_after_a_signal_that_mpirun_forwards(self):
-        self.assert_stopped("forwarded", 3, lambda p: p.send_signal(signal.SIGUSR1))
-
-    def test_after_sigterm_to_mpirun_which_kills_soon_after(self):
-        self.sweep(long_job("longer", 100))  # mpirun takes a second to forward the signal
-        for name, number in (("term.h5", signal.SIGTERM), ("typed.h5", signal.SIGINT)):  # SIGINT is Ctrl-C
-            _, _, stderr = self.interrupt(name, 3, lambda p: p.send_signal(number))
-            self.assertRegex(stderr, r"mpirun \(SIGTERM\).*--resume")
-            self.resume(name, 3)  # mpirun may kill the ranks before they record the end
-
-    def test_without_mpirun_one_signal_or_a_second_one_during_the_stop(self):
-        def twice(process):
-            process.send_signal(signal.SIGINT)
-            process.send_signal(signal.SIGTERM)
-
-        stderr = self.assert_stopped("typed-alone", 0, lambda p: p.send_signal(signal.SIGINT))
-        self.assertIn("Ctrl-C (SIGINT)", stderr)
-        self.assert_stopped("alone", 0, twice)
+                    self.rodsweep(ranks, "run", path, "-o", f"{path}-{ranks}.h5")
+                    self.assert_same_results(path + "-alone.h5", f"{path}-{ranks}.h5")
 
 
 class Killers(SweepCase):
