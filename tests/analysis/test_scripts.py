@@ -54,10 +54,6 @@ class Spatial(Scripts):
         self.assertIn("CG ratios", done.stderr)
 
     def test_mistakes_are_one_line_and_exit_code_2(self):
-        self.refused("spatial.py", "none.h5", words="none.h5: file not found")
-        with open("notes.txt", "w") as notes:
-            notes.write("hello")
-        self.refused("spatial.py", "notes.txt", words="not an HDF5 file")
         self.write()
         for words, *arguments in (("did you mean scene.segments?", "--x", "segmnts"),
                                   ("did you mean helix?", "--scene", "helx"), ("'0.5'", "--tolerance", "0.5"),
@@ -68,11 +64,6 @@ class Spatial(Scripts):
                                 ("0 of 24 tasks ok, none failed, 24 pending", {"pending": range(24)})):
             self.write(**settings)
             self.refused("spatial.py", "sweep.h5", words=words)
-
-    def test_help_shows_examples(self):
-        command = [os.path.join(synthetic.ANALYSIS, "spatial.py"), "--help"]
-        said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=self.folder).stdout
-        self.assertIn("analysis/spatial.py results/demo.h5", said)
 
 
 class Summary(Scripts):
@@ -194,7 +185,6 @@ class Summary(Scripts):
         self.assertEqual((done.stdout, done.stderr), ("0\n", ""))
 
     def test_mistakes_are_one_line_and_exit_code_2(self):
-        self.refused("summary.py", "none.h5", words="file not found")
         self.write()
         for words, *arguments in (("did you mean scene.length_m?", "--by", "scene.length"),
                                   ("known: 10, 20, 40", "--select", "scene.segments=7"),

@@ -91,13 +91,6 @@ TEST_CASE("the summary counts solves that missed their tolerance") {
              Contains("\n29 of 1040 solves missed the tolerance: their guesses have no times in these tasks\n"));
 }
 
-TEST_CASE("the summary of a sweep stopped early says what is left") {
-  CHECK(summary_text({15, {}, dispatch_of(6, 0, 9), 2, "x.h5"}) ==
-        "15 tasks: 6 ok, 9 left to do\n"
-        "10.0 s for 6 tasks, 0.6 tasks/s, 2 workers busy 75 % of the time\n"
-        "results: x.h5");
-}
-
 TEST_CASE("the summary of a shard counts its own tasks, and says how the shards are put together") {
   const auto summary = [](const char* path, const Dispatch& dispatch) {
     return summary_text({15, {}, dispatch, 1, path, "build/rodsweep", {}, Shard{2, 4}});
