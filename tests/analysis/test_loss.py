@@ -129,9 +129,8 @@ class Script(Scripts):
         self.plant("hole.h5")
         with h5py.File("hole.h5", "r+") as h5:
             del h5["training/rate"]
-        for name, words in (("sweep.h5", "holds the results of a sweep"), ("none.h5", "file not found"),
-                            ("begun.h5", "no epoch"), ("old.h5", "schema version 7, these scripts read 2"),
-                            ("hole.h5", "damaged")):
+        for name, words in (("sweep.h5", "holds the results of a sweep"), ("begun.h5", "no epoch"), ("hole.h5", "damaged"),
+                            ("old.h5", "schema version 7, these scripts read 2")):
             self.assertIn(name, self.refused("loss.py", name, words=words))
         self.refused("spatial.py", "hole.h5", words="hole.h5 is a rodsweep file of kind model")
 

@@ -52,14 +52,6 @@ class Plugin(InAFolder):
             self.assertEqual(file["/tasks/outcome"][0].rstrip(b"\0"), b"error")
             self.assertIn(b"plug-in mine.so: no guess in step 0", file["/tasks/message"][0])
 
-    def test_what_is_no_plugin_is_refused_before_the_run(self):
-        with open("text.so", "w", encoding="utf-8") as file:
-            file.write("not a library")
-        for library, words in (("text.so", "plug-in text.so: cannot be loaded"), ("none.so", "none.so was not found")):
-            error = self.ran("validate", self.job({"plugin": {"library": library}}), code=2).stderr
-            self.assertIn("guesses[1].plugin.library: ", error)
-            self.assertIn(words, error)
-
     def test_a_library_that_was_cut_off_anywhere_is_refused(self):
         with open("mine.so", "rb") as file:
             whole = file.read()
@@ -93,13 +85,6 @@ const rodsweep_plugin_functions* rodsweep_plugin(void) {
         with h5py.File("s.h5") as file:
             self.assertEqual(file["/tasks/message"][0].decode(), text)
         self.assertIn(text, self.said("status", "s.h5"))
-
-    def test_a_sweep_is_not_resumed_with_another_library(self):
-        self.ran("run", self.job({"plugin": {"library": "mine.so"}}), "-o", "s.h5")
-        with open("mine.so", "ab") as file:
-            file.write(b"changed")
-        error = self.ran("run", "s.json", "-o", "s.h5", "--resume", code=2).stderr
-        self.assertIn("input files of the job have changed", error)
 
 
 if __name__ == "__main__":

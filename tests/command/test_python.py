@@ -200,16 +200,6 @@ class Python(WithPython):
             with h5py.File(f"{norm}.h5") as file:
                 self.assertEqual(file["/tasks/outcome"][0].rstrip(b"\0"), b"indefinite")
 
-    def test_a_sweep_is_not_resumed_with_other_weights(self):
-        self.write("mine.py", guess("def propose(self, system): return float(open('weights.txt').read()) * system.b"))
-        self.write("weights.txt", "1e-9")
-        job = self.job({"python": {"file": "mine.py", "inputs": ["weights.txt"]}})
-        said = self.ran("run", job, "-o", "s.h5")
-        self.assertNotIn("warning", said.stderr)
-        self.write("weights.txt", "-1e-9")
-        self.assertIn("or input files of the job have changed: mine.py, weights.txt",
-                      self.ran("run", job, "-o", "s.h5", "--resume", code=2).stderr)
-
     def test_a_file_that_is_opened_but_not_named_is_told_once_with_the_key_to_write(self):
         self.write("helper.py", "ONE = 1.0\n")
         self.write("other.txt", "1")
@@ -252,13 +242,6 @@ class Python(WithPython):
             said = self.ran("validate", job, env={**os.environ, "VIRTUAL_ENV": os.path.abspath("env")}).stderr
             words = f"env, of Python 3.1.4: its packages are not found by rodsweep's P{own[1:6]} {own[6:]}; make"
             self.assertEqual(words in said, bool(version), said)
-
-    def test_a_sweep_is_not_resumed_with_another_file(self):
-        self.new("guess", "mine.py")
-        self.ran("run", self.job({"python": {"file": "mine.py"}}), "-o", "s.h5")
-        with open("mine.py", "a", encoding="utf-8") as file:
-            file.write("# changed\n")
-        self.assertIn("input files of the job have changed", self.ran("run", "s.json", "-o", "s.h5", "--resume", code=2).stderr)
 
     def test_a_preconditioner_that_gives_no_numbers_is_named(self):
         self.write("mine.py", "class Preconditioner:\n    def __init__(self, rods, options): pass\n"

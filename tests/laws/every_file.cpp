@@ -1,6 +1,8 @@
 // Every key that takes a file: files of its kind are accepted, planned and run, whatever surrounds the key, and no
 // others.
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
 
 #include "runner/measure/inputs.hpp"
 #include "tests/laws/key_places.hpp"
@@ -26,6 +28,13 @@ Json wrapped(Json job, const std::string& around) {
   return job;
 }
 
+std::string text_of(const Json& file) { return file.get<std::string>(); }
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 TEST_CASE("two files of a key's kind are accepted alone, in sweeps and in swept objects around it") {
   visit_files([](const KeyPlace& at) {
     CAPTURE(at.path());
@@ -36,6 +45,25 @@ TEST_CASE("two files of a key's kind are accepted alone, in sweeps and in swept 
       CHECK(objection(at.with("more/../" + file.get<std::string>())) == "");
       for (const std::string& around : at.sweepable) CHECK(objection(wrapped(at.with(file), around)) == "");
     }
+  });
+}
+
+TEST_CASE("what a task is depends on what its files hold, not on their names") {
+  const auto identity = [](const KeyPlace& at, const Json& file) {
+    const TaskIdentity task = checked_plan(read(at.with(file))).identity(0);
+    return std::pair(task.trajectory, task.guesses);
+  };
+  visit_files([&](const KeyPlace& at) {
+    if (at.job["kind"] == "train") return;
+    CAPTURE(at.path());
+    const std::vector<Json> files = accepted(at, 2);
+    REQUIRE(files.size() == 2);
+    const std::filesystem::path folder = inputs().job().parent_path(), copy = folder / ("copy" + text_of(files[0]));
+    std::filesystem::create_directories(copy.parent_path());
+    std::filesystem::copy_file(folder / text_of(files[0]), copy, std::filesystem::copy_options::overwrite_existing);
+    const bool are_equal = content(folder / text_of(files[0])) == content(folder / text_of(files[1]));
+    CHECK((identity(at, files[0]) == identity(at, files[1])) == are_equal);
+    CHECK(identity(at, files[0]) == identity(at, "copy" + text_of(files[0])));
   });
 }
 

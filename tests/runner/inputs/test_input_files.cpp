@@ -61,19 +61,6 @@ TEST_CASE("a training misses the data sets that are not there") {
             " was not found; the path is relative to the job file's folder; did you mean \"here.h5\"?");
 }
 
-TEST_CASE("what a task is depends on what its files hold, not on their names") {
-  const JobFolder folder;
-  folder.write("a.h5", "weights");
-  folder.write("b.h5", "weights");
-  const auto identity = [&](const char* model) { return Plan(folder.job(learned(model))).inputs(0); };
-  const TaskInputs before = identity("a.h5");
-  CHECK(identity("b.h5").guesses == before.guesses);
-  folder.write("a.h5", "other weights");
-  CHECK(identity("a.h5").guesses != before.guesses);
-  CHECK(identity("a.h5").guesses.front() == before.guesses.front());
-  CHECK(identity("a.h5").trajectory == before.trajectory);
-}
-
 TEST_CASE("a job whose files another process has read needs none of them") {
   const JobFolder folder;
   folder.write("a.h5", "weights");
@@ -83,25 +70,6 @@ TEST_CASE("a job whose files another process has read needs none of them") {
   CHECK(told.files.at("a.h5").hash == read.files.at("a.h5").hash);
   CHECK(told.files.at("a.h5").path == read.files.at("a.h5").path);
   CHECK(Plan(told).inputs(0).guesses == Plan(read).inputs(0).guesses);
-}
-
-TEST_CASE("a file has a use for each kind that its keys expect, whatever surrounds them") {
-  const JobFolder folder;
-  folder.write("a b.h5", "one");
-  folder.write("c.h5", "two");
-  const Job job = folder.job(with("/guesses", R"(["zero", {"copingnet": {"model": {"grid": ["a b.h5", "c.h5"]}}},
-      {"guarded": {"guess": {"grid": [{"knn": {"data": "a b.h5"}}, {"copingnet": {"model": "c.h5"}}]},
-                   "threshold": 1}}])"));
-  const auto uses = [&](const char* written) {
-    std::vector<std::pair<std::string, FileKind>> found;
-    for (const FileUse& use : job.files.at(written).uses) found.emplace_back(use.key_path, use.kind);
-    return found;
-  };
-  CHECK(uses("a b.h5") == std::vector<std::pair<std::string, FileKind>>{
-                              {"guesses[1].copingnet.model.grid[0]", FileKind::model},
-                              {"guesses[2].guarded.guess.grid[0].knn.data", FileKind::data_set}});
-  CHECK(uses("c.h5") ==
-        std::vector<std::pair<std::string, FileKind>>{{"guesses[1].copingnet.model.grid[1]", FileKind::model}});
 }
 
 }  // namespace test_input_files

@@ -28,16 +28,6 @@ TEST_CASE("nearest neighbours are named by how many they are, and read from besi
   CHECK(std::get<guess::Knn>(five.spec(0).guesses.back().kind).simulations == 0);
 }
 
-TEST_CASE("what nearest neighbours are depends on what their data set holds") {
-  const JobFolder folder;
-  folder.write("data.h5", "systems");
-  const auto identity = [&] { return Plan(folder.job(neighbours(R"({"data": "data.h5"})"))).inputs(0); };
-  const TaskInputs before = identity();
-  folder.write("data.h5", "other systems");
-  CHECK(identity().guesses.back() != before.guesses.back());
-  CHECK(identity().trajectory == before.trajectory);
-}
-
 TEST_CASE("a network instead of the solve has a trajectory of its own and no guesses") {
   const JobFolder folder;
   folder.write("net.h5", "weights");
@@ -48,10 +38,6 @@ TEST_CASE("a network instead of the solve has a trajectory of its own and no gue
   CHECK(std::filesystem::equivalent(spec.solve.model, folder.path() / "net.h5"));
   CHECK(spec.guesses.empty());
   CHECK(spec.own_guess == -1);
-
-  const std::string before = plan.inputs(0).trajectory;
-  folder.write("net.h5", "other weights");
-  CHECK(Plan(folder.job(end_to_end(R"({"method": "end_to_end", "model": "net.h5"})"))).inputs(0).trajectory != before);
 }
 
 TEST_CASE("networks, cg and the direct solve stand side by side in one closed loop") {

@@ -1,7 +1,6 @@
 // Refused jobs: one table for what concerns several values or what a message advises. tests/laws/every_refusal.cpp has each
 // key with values that its row does not allow, under wrong names, in other kinds of objects, and left out.
 #include <catch2/catch.hpp>
-#include <sstream>
 
 #include "tests/runner/job_examples.hpp"
 

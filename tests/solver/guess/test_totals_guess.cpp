@@ -40,35 +40,6 @@ Scene two_rods() {
   return scene;
 }
 
-TEST_CASE("every solution is accepted with its system, and the sum of a step follows before the next step") {
-  const Scene scene = two_rods();
-  const LinearSystem systems[] = {LinearSystem(scene.rods[0]), LinearSystem(scene.rods[1])};
-  std::vector<Told> told;
-  TotalsGuess guess(scene, std::make_unique<Listener>(told));
-  VectorX x0(18);
-  const auto constant = [](double value) { return VectorX::Constant(18, value).eval(); };
-  for (int step = 0; step < 2; ++step)
-    for (int newton = 0; newton < 3; ++newton)
-      for (int rod = 0; rod < 2; ++rod) {
-        guess.prepare({step, newton, rod});
-        guess.propose(systems[rod], {step, newton, rod}, x0);
-        guess.accept(systems[rod], {step, newton, rod}, constant(100 * step + 10 * newton + rod));
-      }
-  std::vector<std::tuple<int, int, int, double>> accepted, totals;
-  for (const Told& t : told) {
-    CHECK(t.solution == constant(t.solution[0]));
-    if (t.system) CHECK(t.system == &systems[t.rod]);
-    (t.system ? accepted : totals).emplace_back(t.step, t.newton, t.rod, t.solution[0]);
-  }
-  const std::vector<std::tuple<int, int, int, double>> solutions{
-      {0, 0, 0, 0},   {0, 0, 1, 1},   {0, 1, 0, 10},  {0, 1, 1, 11},  {0, 2, 0, 20},  {0, 2, 1, 21},
-      {1, 0, 0, 100}, {1, 0, 1, 101}, {1, 1, 0, 110}, {1, 1, 1, 111}, {1, 2, 0, 120}, {1, 2, 1, 121}};
-  CHECK(accepted == solutions);
-  CHECK(totals == std::vector<std::tuple<int, int, int, double>>{{0, 0, 0, 30}, {0, 0, 1, 33}});
-  CHECK(told[6].system == nullptr);  // the total of step 0 of a rod before its first solution of step 1
-  CHECK(told[8].system == nullptr);
-}
-
 TEST_CASE("proposing tells nothing: totals are told before, once") {
   const Scene scene = two_rods();
   const LinearSystem system(scene.rods[0]);

@@ -179,17 +179,6 @@ TEST_CASE("motions that turn a joint by more than a right angle are refused") {
   CHECK_THROWS_WITH(build_scene(tip), Contains("tip_motion turns the end by 1000") && Contains("each of 11 joints"));
 }
 
-TEST_CASE("a motion moves all segments that are held at its point") {
-  Lattice lattice = test::lattice_of(Lattice::Cell::octet, 2, 3, Held::side);
-  lattice.prescribed.motions.push_back({{0, 0, 0}, {0.1, 0, 0}, {0, 0, 0}, {{0, 1}, {0, 1}, false}});
-  const Scene scene = build_scene(lattice);
-  int held = 0;
-  for (std::size_t s = 0; s < scene.rods[0].segments.size(); ++s)
-    held += scene.rods[0].segments[s].is_static && scene.rods[0].position[s].norm() < 1e-9;
-  CHECK(held > 1);
-  CHECK(static_cast<int>(scene.clamps.size()) == held);
-}
-
 TEST_CASE("loads stiffen all inextensible joints of a rod alike, those of crossings too") {
   Lattice lattice = test::lattice_of(Lattice::Cell::cubic, 3);
   lattice.stretch = Stretch::inextensible;
@@ -212,7 +201,7 @@ TEST_CASE("loads stiffen all inextensible joints of a rod alike, those of crossi
   }
 }
 
-TEST_CASE("points away from rods, loads on clamps and motions of free segments are refused") {
+TEST_CASE("points away from rods, motions of free segments and those that begin with a jump are refused") {
   const auto refused = [](const Prescribed& prescribed) {
     BendingRod rod = test::bending_rod(10);
     rod.prescribed = prescribed;
@@ -224,13 +213,11 @@ TEST_CASE("points away from rods, loads on clamps and motions of free segments a
     return std::string();
   };
   const Schedule schedule{{0, 1}, {0, 1}, false};
-  Prescribed away, held, free, jump, shape;
+  Prescribed away, free, jump;
   away.loads.push_back({{0, 5, 0}, {1, 0, 0}, {0, 0, 0}, {}});
-  held.loads.push_back({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {}});
   free.motions.push_back({test::bending_rod(10).vertex_m(10), {1, 0, 0}, {0, 0, 0}, schedule});
   jump.motions.push_back({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {}});
   CHECK_THAT(refused(away), Contains("a load at [0, 5, 0] is") && Contains("m away from the nearest segment"));
-  CHECK_THAT(refused(held), Contains("a load at [0, 0, 0] is on a held segment"));
   CHECK_THAT(refused(free), Contains("a motion of a clamp at") && Contains("m away from the nearest segment"));
   CHECK_THAT(refused(jump), Contains("motions[0]: begins with the factor 1"));
 }

@@ -62,30 +62,6 @@ TEST_CASE("Gauss-Seidel conserves the linear momentum of a free rod to rounding"
   }
 }
 
-TEST_CASE("Gauss-Seidel steps of a moved and turned scene are the moved and turned steps") {
-  const Quaternion turn(Eigen::AngleAxisd(2, Vector3(1, -2, 3).normalized()));
-  const Vector3 shift(3, -1, 2);
-  for (const char* method : methods) {
-    INFO(method);
-    Scene scene = test::moving_scene(8), moved = scene;
-    moved.gravity_m_s2 = turn * scene.gravity_m_s2;
-    Rod& rod = moved.rods[0];
-    for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-      rod.position[s] = turn * rod.position[s] + shift;
-      rod.orientation[s] = turn * rod.orientation[s];
-      rod.velocity[s] = turn * rod.velocity[s];
-      rod.angular_velocity[s] = turn * rod.angular_velocity[s];
-    }
-    for (Scene* each : {&scene, &moved}) {
-      const auto projection = make(method, *each);
-      TimeStepper stepper(*each, {0.02, 10, 0});
-      for (int step = 0; step < 10; ++step) stepper.step(*projection);
-    }
-    for (std::size_t s = 0; s < rod.segments.size(); ++s)
-      CHECK((rod.position[s] - turn * scene.rods[0].position[s] - shift).norm() < 1e-12);
-  }
-}
-
 TEST_CASE("chains held at both ends, trees, rings and nets are projected alike") {
   const std::pair<test::Edges, std::vector<int>> graphs[] = {
       {test::chain(6), {0, 5}}, {test::tree(2, 2), {0}}, {test::ring(6), {}}, {test::net(2, 3), {0}}};
