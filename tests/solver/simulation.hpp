@@ -10,6 +10,7 @@
 
 #include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_parts.hpp"
+#include "solver/step/observables.hpp"
 #include "solver/step/time_step.hpp"
 
 namespace rodsweep {
@@ -17,6 +18,14 @@ namespace rodsweep {
 /// The free end of a chain of segments.
 inline Vector3 tip(const Rod& rod) {
   return rod.position.back() + rod.segments.back().length_m / 2 * director(rod.orientation.back());
+}
+
+/// Kinetic, elastic and gravitational energy of all rods.
+inline double mechanical_energy(const Scene& scene) {
+  double sum = 0;
+  for (const Rod& rod : scene.rods)
+    sum += kinetic_energy(rod) + elastic_energy(rod) + gravitational_energy(rod, scene.gravity_m_s2);
+  return sum;
 }
 
 /// A straight rod along +x from the origin; its first and last segments are held. `force_n`: see joint_between().

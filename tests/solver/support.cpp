@@ -190,6 +190,20 @@ Lattice lattice_of(Lattice::Cell cell, int nodes, int segments, Held held) {
   return p;
 }
 
+Lattice slender_lattice(Lattice::Cell cell, int nodes, int segments, Held held, double modulus) {
+  Lattice p = lattice_of(cell, nodes, segments, held);
+  p.radius_m = 0.01;
+  p.youngs_modulus_pa = modulus;
+  p.torsion_modulus_pa = 0.4 * modulus;
+  return p;
+}
+
+VectorX residual(const BlockMatrix& a, const VectorX& b, const VectorX& x) {
+  VectorX product(x.size());
+  a.multiply(x.data(), product.data());
+  return b - product;
+}
+
 Scene moving_scene(int segments, int steps) {
   Simulation simulation(build_scene(bending_rod(segments)), StepSettings{});
   simulation.run(steps);

@@ -64,6 +64,8 @@ void set_rigid_velocity(Rod& rod, const Vector3& v, const Vector3& w);
 BendingRod bending_rod(int segments, Clamp clamp = Clamp::segment);
 /// Parameters of a lattice with the same number of nodes along every edge.
 Lattice lattice_of(Lattice::Cell cell, int nodes, int segments = 3, Held held = Held::corners);
+/// The same of rods of 1 cm, which is condensed from some size on.
+Lattice slender_lattice(Lattice::Cell cell, int nodes, int segments = 3, Held held = Held::side, double modulus = 1e6);
 /// A moving, bending rod after `steps` direct steps.
 Scene moving_scene(int segments, int steps = 8);
 
@@ -78,6 +80,9 @@ struct DenseSystem {
   VectorX b;
 };
 DenseSystem dense_system(const Rod& rod, double dt);
+
+/// b - A x, by the product of CG.
+VectorX residual(const BlockMatrix& a, const VectorX& b, const VectorX& x);
 
 /// The rod of a tree, its assembled system and the solution.
 struct OneRod {

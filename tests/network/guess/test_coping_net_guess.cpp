@@ -30,13 +30,13 @@ TEST_CASE("with the best length what is left of the error is A-orthogonal to the
       const Proposal with = guess.propose(system, at, x0);
       CHECK(with.products == without.products + (without.nonzero ? 1 : 0) + 1);
       REQUIRE(with.residual);
-      VectorX product(x0.size());
-      system.matrix().multiply(x0.data(), product.data());
-      CHECK((system.rhs() - product - *with.residual).norm() < 1e-11 * system.rhs().norm() + 1e-24);
+      const VectorX left = test::residual(system.matrix(), system.rhs(), x0);
+      CHECK((left - *with.residual).norm() < 1e-11 * system.rhs().norm() + 1e-24);
       const double before = energy_error(system, alone, solution), after = energy_error(system, x0, solution);
       CHECK(after <= before * (1 + 1e-6) + 1e-24);
       // The correction has optimal length: (x0 - x) is A-orthogonal to it.
       const VectorX correction = x0 - alone;
+      VectorX product(x0.size());
       system.matrix().multiply(correction.data(), product.data());
       const double length = std::sqrt(correction.dot(product));
       CHECK(std::abs(product.dot(x0 - solution)) <= 1e-6 * length * std::sqrt(before) + 1e-24);
@@ -86,7 +86,7 @@ TEST_CASE("a right-hand side of zero is answered with zero") {
 TEST_CASE("where loops are cut a network proposes what lowers the residual, or nothing") {
   const Scene scene = test::scene_of(test::random_rod(test::ring(6), {}, 3));
   const LinearSystem system = test::assembled(scene.rods.front());
-  VectorX x0(system.rhs().size()), residual(x0.size());
+  VectorX x0(system.rhs().size());
   int proposed = 0;
   for (const CopingNetSettings& settings : test::kinds_of_networks()) {
     CopingNetGuess guess(test::random_model(settings), scene, 1);
@@ -94,8 +94,7 @@ TEST_CASE("where loops are cut a network proposes what lowers the residual, or n
     proposed += proposal.nonzero;
     CHECK(x0.allFinite());
     if (settings.processor == Processor::message_passing || has_all_couplings(settings)) continue;  // these see loops
-    system.matrix().multiply(x0.data(), residual.data());
-    residual = system.rhs() - residual;
+    const VectorX residual = test::residual(system.matrix(), system.rhs(), x0);
     CHECK(jacobi_norm_squared(system.matrix(), residual) <= jacobi_norm_squared(system.matrix(), system.rhs()));
     if (proposal.residual) CHECK((residual - *proposal.residual).norm() < 1e-11 * system.rhs().norm());
   }

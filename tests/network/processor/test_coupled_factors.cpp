@@ -31,11 +31,7 @@ ScaledSystem<float> system_of(const Rod& rod, unsigned seed = 1) {
 }
 
 Rod lattice(int nodes) {
-  Lattice p = lattice_of(Lattice::Cell::cubic, nodes, 2);
-  p.radius_m = 0.01;
-  p.youngs_modulus_pa = 1e6;
-  p.torsion_modulus_pa = 4e5;
-  return build_scene(p).rods.front();
+  return build_scene(slender_lattice(Lattice::Cell::cubic, nodes, 2, Held::corners)).rods.front();
 }
 
 /// A lattice, a tree and a net side by side.

@@ -10,11 +10,8 @@ namespace rodsweep::test_condensed_cg {
 using test::Case, test::Run, test::run;
 
 Case lattice(int nodes, double modulus, Lattice::Cell cell = Lattice::Cell::cubic) {
-  Lattice p = test::lattice_of(cell, nodes, 3, Held::side);
-  p.radius_m = 0.01;
-  p.youngs_modulus_pa = modulus;
-  p.torsion_modulus_pa = 0.4 * modulus;
-  Rod rod = build_scene(p).rods.front();  // at rest, before it falls
+  Rod rod =
+      build_scene(test::slender_lattice(cell, nodes, 3, Held::side, modulus)).rods.front();  // at rest, before it falls
   test::Random random(1);
   for (int s = 0; s < rod.segment_count(); ++s)
     if (!rod.segments[s].is_static) rod.position[s] += Vector3(0, -0.004, 0) + random.vector(1e-4);
@@ -27,11 +24,7 @@ Run solved(const Case& c, CgSolver& cg, double tolerance, const VectorX* start =
   return run(cg, c.b(), tolerance, start, residual);
 }
 
-double residual(const Case& c, const VectorX& x) {
-  VectorX product(x.size());
-  c.a().multiply(x.data(), product.data());
-  return (c.b() - product).norm() / c.b().norm();
-}
+double residual(const Case& c, const VectorX& x) { return test::residual(c.a(), c.b(), x).norm() / c.b().norm(); }
 
 TEST_CASE("condensed CG stops where the residual of all joints is small, and says how small it was") {
   for (const Lattice::Cell cell : {Lattice::Cell::cubic, Lattice::Cell::body_centred, Lattice::Cell::octet}) {

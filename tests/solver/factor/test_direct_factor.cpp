@@ -15,15 +15,8 @@
 namespace rodsweep::test_direct_factor {
 
 using Cell = Lattice::Cell;
+using test::slender_lattice;
 constexpr double dt = 0.02;
-
-Lattice slender(Cell cell, int nodes, int segments = 3, Held held = Held::side, double modulus = 1e6) {
-  Lattice p = test::lattice_of(cell, nodes, segments, held);
-  p.radius_m = 0.01;
-  p.youngs_modulus_pa = modulus;
-  p.torsion_modulus_pa = 0.4 * modulus;
-  return p;
-}
 
 template <class Parameters>
 Rod rod_of(const Parameters& p) {
@@ -53,9 +46,7 @@ VectorX solved(DirectFactor& factor, const Rod& rod, const LinearSystem& system)
 
 /// |b - A x| / |b|.
 double residual_of(const LinearSystem& system, const VectorX& x) {
-  VectorX product(x.size());
-  system.matrix().multiply(x.data(), product.data());
-  return (system.rhs() - product).norm() / system.rhs().norm();
+  return test::residual(system.matrix(), system.rhs(), x).norm() / system.rhs().norm();
 }
 
 double difference(const VectorX& one, const VectorX& other) { return (one - other).norm() / other.norm(); }
@@ -81,16 +72,16 @@ TEST_CASE(
     "lattices that stretch physically are condensed; chains, trees, rings and nets of almost rigid rods are not") {
   for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet})
     for (const int segments : {1, 3}) {
-      const DirectFactor factor(rod_of(slender(cell, 4, segments)));
+      const DirectFactor factor(rod_of(slender_lattice(cell, 4, segments)));
       CHECK(factor.condenses());
       CHECK_FALSE(factor.has_whole());
     }
   CHECK(DirectFactor(physical_net(8)).condenses());
-  CHECK_FALSE(DirectFactor(rod_of(slender(Cell::cubic, 2))).condenses());
+  CHECK_FALSE(DirectFactor(rod_of(slender_lattice(Cell::cubic, 2))).condenses());
   for (const Rod& rod : {test::random_rod(test::chain(40), {0}, 1), test::random_rod(test::tree(4, 2), {0}, 2),
                          test::random_rod(test::ring(40), {}, 3), test::random_rod({}, {}, 4)})
     CHECK_FALSE(DirectFactor(rod).condenses());
-  Lattice rigid = slender(Cell::cubic, 5);
+  Lattice rigid = slender_lattice(Cell::cubic, 5);
   rigid.stretch = Stretch::inextensible;
   CHECK_FALSE(DirectFactor(rod_of(rigid)).condenses());
   Net net;
@@ -99,7 +90,7 @@ TEST_CASE(
 }
 
 TEST_CASE("whether a rod can be condensed depends on the ratio of its compliances alone") {
-  Rod rod = rod_of(slender(Cell::cubic, 3));
+  Rod rod = rod_of(slender_lattice(Cell::cubic, 3));
   CHECK(can_be_condensed(rod));
   for (Joint& joint : rod.joints) joint.compliance *= 1e-30;
   CHECK(can_be_condensed(rod));
@@ -115,7 +106,7 @@ TEST_CASE("a condensed system has the solution of the factor of A") {
       for (const Held held : {Held::side, Held::corners, Held::free})
         for (const bool balanced : {false, true}) {
           CAPTURE(static_cast<int>(cell), segments, static_cast<int>(held), balanced);
-          Rod rod = test::shaken(rod_of(slender(cell, cell == Cell::octet ? 3 : 4, segments, held)), 1, 1e-3);
+          Rod rod = test::shaken(rod_of(slender_lattice(cell, cell == Cell::octet ? 3 : 4, segments, held)), 1, 1e-3);
           rod.lambda = 1e-6 * test::Random(5).entries(6 * rod.joint_count());
           rod.free_position = rod.position;
           rod.free_orientation = rod.orientation;
@@ -144,15 +135,15 @@ TEST_CASE("soft rods need no correction, stiff ones a single one, after which th
   };
   for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet})
     for (const double modulus : {1e6, 1e9, 2e11})
-      check(test::shaken(rod_of(slender(cell, 3, 3, Held::side, modulus)), 2, 1e-4), modulus > 1e6);
-  Lattice p = slender(Cell::cubic, 3);
+      check(test::shaken(rod_of(slender_lattice(cell, 3, 3, Held::side, modulus)), 2, 1e-4), modulus > 1e6);
+  Lattice p = slender_lattice(Cell::cubic, 3);
   p.stretch = Stretch::inextensible;
   p.stretch_compliance_per_j = 1.2e-5;
   check(test::shaken(rod_of(p), 3, 1e-4), 1);
 }
 
 TEST_CASE("what condensation cannot solve accurately is solved by the factor of A, to its bits") {
-  Lattice p = slender(Cell::cubic, 4);
+  Lattice p = slender_lattice(Cell::cubic, 4);
   Rod rod = test::shaken(rod_of(p), 1, 1e-4);
   DirectFactor factor(rod);
   const VectorX soft = solved(factor, rod, test::assembled(rod, dt));
@@ -170,7 +161,7 @@ TEST_CASE("what condensation cannot solve accurately is solved by the factor of 
 }
 
 TEST_CASE("systems that are not positive definite or not finite are called so") {
-  Rod rod = rod_of(slender(Cell::octet, 3));
+  Rod rod = rod_of(slender_lattice(Cell::octet, 3));
   DirectFactor factor(rod);
   REQUIRE(factor.condenses());
   VectorX x = VectorX::Zero(6 * rod.joint_count());
@@ -187,20 +178,20 @@ TEST_CASE("systems that are not positive definite or not finite are called so") 
 }
 
 TEST_CASE("the same system gives the same bits, whatever was solved before; a system without load gives zero") {
-  const Rod rod = test::shaken(rod_of(slender(Cell::body_centred, 3)), 1), other = test::shaken(rod, 2);
+  const Rod rod = test::shaken(rod_of(slender_lattice(Cell::body_centred, 3)), 1), other = test::shaken(rod, 2);
   const LinearSystem system = test::assembled(rod, dt);
   DirectFactor factor(rod), fresh(rod);
   const VectorX x = solved(factor, rod, system);
   CHECK(difference(solved(factor, other, test::assembled(other, dt)), x) > 1e-3);
   CHECK(solved(factor, rod, system) == x);
   CHECK(solved(fresh, rod, system) == x);
-  const Rod still = rod_of(slender(Cell::body_centred, 3));
+  const Rod still = rod_of(slender_lattice(Cell::body_centred, 3));
   CHECK(solved(factor, still, test::assembled(still, dt)).norm() < 1e-12 * x.norm());
 }
 
 TEST_CASE("renumbering, turning and shifting a rod change its solution by rounding only") {
   for (const Cell cell : {Cell::cubic, Cell::octet}) {
-    const Rod rod = test::shaken(rod_of(slender(cell, 4)), 1, 1e-3);
+    const Rod rod = test::shaken(rod_of(slender_lattice(cell, 4)), 1, 1e-3);
     DirectFactor factor(rod);
     const VectorX x = solved(factor, rod, test::assembled(rod, dt));
 
@@ -222,7 +213,7 @@ TEST_CASE("renumbering, turning and shifting a rod change its solution by roundi
 
 TEST_CASE("a lattice moves as it does by the factor of A") {
   for (const std::optional<double> momentum_tolerance : {std::optional<double>(), std::optional<double>(1e-9)}) {
-    Scene scene = build_scene(slender(Cell::cubic, 4, 3, Held::corners, 1e7)), whole = scene;
+    Scene scene = build_scene(slender_lattice(Cell::cubic, 4, 3, Held::corners, 1e7)), whole = scene;
     DirectSolve direct(scene);
     REQUIRE(DirectFactor(scene.rods.front()).condenses());
     BlockFactor factor(LinearSystem(whole.rods.front()).matrix(), root_to_leaf_order(whole.rods.front()));
@@ -238,7 +229,8 @@ TEST_CASE("a lattice moves as it does by the factor of A") {
       CHECK(report.newton_iterations == expected.newton_iterations);
       CHECK(report.balanced == expected.balanced);
     }
-    CHECK(test::distance(scene, build_scene(slender(Cell::cubic, 4, 3, Held::corners, 1e7)), &Rod::position) > 1e-2);
+    CHECK(test::distance(scene, build_scene(slender_lattice(Cell::cubic, 4, 3, Held::corners, 1e7)), &Rod::position) >
+          1e-2);
     CHECK(test::distance(scene, whole, &Rod::position) < 1e-11);
   }
 }

@@ -1,6 +1,5 @@
 // A guess that receives the sums of whole steps.
 #include <catch2/catch.hpp>
-#include <tuple>
 #include <vector>
 
 #include "solver/guess/regression_guess.hpp"

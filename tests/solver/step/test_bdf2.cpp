@@ -1,8 +1,7 @@
 // BDF2 against closed forms and itself: second order for turns, twists, trees, loads, wind and drag, in both kinds of
-// step; impacts without rebound; and the symmetries of Euler's step.
+// step; impacts without rebound. For symmetries see tests/laws/every_scene.cpp.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -13,7 +12,6 @@
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 #include "tests/solver/touching.hpp"
-#include "tests/solver/turned.hpp"
 
 namespace rodsweep::test_bdf2 {
 
@@ -64,26 +62,6 @@ BendingRod stiff_rod() {
   BendingRod rod = test::bending_rod(12, Clamp::segment);
   rod.youngs_modulus_pa = 1e6;
   return rod;
-}
-
-TEST_CASE("a torque-free top precesses about its angular momentum with an error of second order") {
-  double error[3];
-  for (int i = 0; i < 3; ++i) {
-    const int steps = 100 << i;
-    const double duration = 0.5;
-    Simulation sim(test::free_body(), bdf2(duration / steps));
-    Rod& rod = sim.rod();
-    const Vector3 axis = director(rod.orientation[0]), across = rod.orientation[0] * Vector3::UnitX();
-    rod.angular_velocity[0] = 6 * axis + 2 * across;
-    const Vector3 spin = angular_momentum(rod);
-    const double rate = spin.norm() / rod.segments[0].inertia_transverse;
-    sim.run(steps);
-    error[i] = (director(rod.orientation[0]) - Eigen::AngleAxisd(rate * duration, spin.normalized()) * axis).norm();
-  }
-  CAPTURE(error[0], error[1], error[2]);
-  CHECK(error[2] < 1e-4);
-  CHECK(std::log2(error[0] / error[1]) == Approx(2).margin(0.1));
-  CHECK(std::log2(error[1] / error[2]) == Approx(2).margin(0.1));
 }
 
 TEST_CASE("drag slows a free body by exp(-c t), with an error of second order") {
@@ -204,42 +182,19 @@ TEST_CASE("Gauss-Seidel with enough iterations takes the same steps of BDF2 as t
   CHECK(distance(scene, after(start, bdf2(0.01), 0.1)) < 2e-3);
 }
 
-TEST_CASE("turned, shifted and mirrored scenes move alike under BDF2") {
-  for (const test::TurnedCase& each : test::turned_cases())
-    for (const Balance balance : {Balance(), Balance(1e-9)}) {
-      INFO(each.name);
-      const Scene moved = after(each.scene, bdf2(0.01), 0.1, balance);
-      const auto apart = [&](Scene other, const auto& image) {
-        other = after(other, bdf2(0.01), 0.1, balance);
-        double most = 0;
-        for (std::size_t r = 0; r < moved.rods.size(); ++r)
-          for (std::size_t s = 0; s < moved.rods[r].segments.size(); ++s)
-            most = std::max(most, (other.rods[r].position[s] - image(moved.rods[r].position[s])).norm());
-        return most;
-      };
-      for (const test::RigidMotion& motion : test::motions)
-        CHECK(apart(test::moved(each.scene, motion), motion) < 1e-8);
-      CHECK(apart(test::mirrored(each.scene), [](const Vector3& x) { return test::mirrored(x); }) < 1e-8);
-    }
-}
-
 TEST_CASE("a swinging rod keeps its energy better than with Euler, and 20,000 steps do not let it grow") {
   const Scene start = build_scene(stiff_rod());
-  const auto energy = [](const Scene& scene) {
-    return test::kinetic_energy(scene) + elastic_energy(scene.rods[0]) +
-           gravitational_energy(scene.rods[0], scene.gravity_m_s2);
-  };
-  const double before = energy(start), scale = test::kinetic_energy(after(start, bdf2(0.001), 0.3));
-  const double lost = before - energy(after(start, bdf2(0.005), 0.6));
+  const double before = mechanical_energy(start), scale = test::kinetic_energy(after(start, bdf2(0.001), 0.3));
+  const double lost = before - mechanical_energy(after(start, bdf2(0.005), 0.6));
   CHECK(lost > 0);
   CHECK(lost < 0.02 * scale);
-  CHECK(lost < (before - energy(after(start, euler(0.005), 0.6))) / 10);
+  CHECK(lost < (before - mechanical_energy(after(start, euler(0.005), 0.6))) / 10);
 
   Simulation simulation(start, {0.01, 6, 1e-9, Integrator::bdf2});
   double highest = -HUGE_VAL;
   for (int step = 0; step < 20000; ++step) {
     simulation.step();
-    highest = std::max(highest, energy(simulation.scene));
+    highest = std::max(highest, mechanical_energy(simulation.scene));
   }
   CHECK(highest < before + 1e-3 * scale);
   CHECK(joint_gap(simulation.rod()) < 1e-5);
@@ -276,21 +231,15 @@ TEST_CASE("rods that fall on each other come to rest and gain no energy") {
   falling.contact.emplace();
   const Scene start = build_scene(falling);
   Simulation simulation(start, {0.01, 10, 1e-9, Integrator::bdf2});
-  const auto energy = [&] {
-    double sum = test::kinetic_energy(simulation.scene);
-    for (const Rod& rod : simulation.scene.rods)
-      sum += elastic_energy(rod) + gravitational_energy(rod, start.gravity_m_s2);
-    return sum;
-  };
-  const double before = energy();
+  const double before = mechanical_energy(start);
   double penetration = 0, gained = 0, last = before;
   int impacts = 0;
   for (int step = 0; step < 300; ++step) {
     const double dt_c = simulation.constraint_dt();
     penetration = std::max(penetration, simulation.step().penetration);
     impacts += simulation.constraint_dt() > dt_c;
-    gained += std::max(0.0, energy() - last);
-    last = energy();
+    gained += std::max(0.0, mechanical_energy(simulation.scene) - last);
+    last = mechanical_energy(simulation.scene);
   }
   CHECK(impacts > 0);
   CHECK(gained < 0.02 * (before - last));  // it oscillates where impacts excite what the step does not resolve
@@ -303,17 +252,12 @@ TEST_CASE("bodies that collide in free space keep their momentum, though a third
                                            test::capsule({0, 0, 0.1}, {0.4, 0, 0.1}, {0, 0, 0}),
                                            test::capsule({0.1, 0, -0.4}, {0.5, 0.1, -0.4}, {0, 0, 2})});
   Simulation simulation(start, bdf2(0.01));
-  const auto momentum = [&] {
-    Vector3 sum = Vector3::Zero();
-    for (const Rod& rod : simulation.scene.rods) sum += linear_momentum(rod);
-    return sum;
-  };
-  const Vector3 before = momentum();
+  const Vector3 before = test::linear_momentum(start);
   double fastest = 0;
   for (int step = 0; step < 60; ++step) {
     simulation.step();
     fastest = std::max(fastest, simulation.scene.rods[1].velocity[0].z());
-    CHECK((momentum() - before).norm() < 1e-9 * before.norm());
+    CHECK((test::linear_momentum(simulation.scene) - before).norm() < 1e-9 * before.norm());
   }
   CHECK(fastest > 0.3);  // the push reached the one behind
 }
