@@ -50,7 +50,7 @@ TEST_CASE("two files of a key's kind are accepted alone, in sweeps and in swept 
 
 TEST_CASE("what a task is depends on what its files hold, not on their names") {
   const auto identity = [](const KeyPlace& at, const Json& file) {
-    const TaskIdentity task = checked_plan(read(at.with(file))).identity(0);
+    const TaskInputs task = checked_plan(read(at.with(file))).inputs(0);
     return std::pair(task.trajectory, task.guesses);
   };
   visit_files([&](const KeyPlace& at) {

@@ -61,6 +61,12 @@ def hang_and_come_back(_, process):
     process.send_signal(signal.SIGUSR1)
 
 
+def fill_the_disk_for_a_while(*_):
+    open("full", "w").close()
+    time.sleep(1.5)  # at least one heartbeat
+    os.remove("full")
+
+
 def meddle(case, process):
     """Neither another program nor a second run may write."""
     case.assertNotEqual(write_note(case.path, locking=True), 0)
@@ -138,6 +144,13 @@ class InterruptedCase(SweepCase):
 
 
 class Interrupted(InterruptedCase):
+    def test_a_heartbeat_that_fails_is_a_warning(self):
+        self.sweep(long_job("beating", samples=400))
+        failing = {**FAULTS["a full disk"].environment, "FAIL_RANK": "0"}
+        self.interrupt(Fault(fill_the_disk_for_a_while, ALL_DONE, ALL_DONE, (), "the heartbeat failed: H5Dwrite failed",
+                             environment=failing))
+        self.assert_as_undisturbed()
+
     def test_by_some_faults(self):
         self.sweep(long_job("some", samples=60))
         self.interrupt_by("a kill of all ranks", "a signal that mpirun forwards", "another writer")
