@@ -26,7 +26,7 @@ sources = $$(find solver network runner tests -name '*.[ch]pp')
 .PHONY: help configure build demo test test-long test-cluster test-arm bench sanitize fuzz schema docs format format-check tidy install uninstall clean
 
 help:
-	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), write results/report.html'
+	@echo 'make demo          build, run the demo sweep (half a minute; continued if it was stopped), write results/report.html'
 	@echo 'jobs/studies.py    the studies: a list; jobs/studies.py NAME... runs them'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow tests: physics, faults, the report in a browser; unit tests under the sanitizers'
