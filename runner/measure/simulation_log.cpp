@@ -45,6 +45,12 @@ void log_segments(const Scene& scene, TaskRecord& record) {
 /// that rolls.
 constexpr double most_tumbled = 1, most_rolled = 7;
 
+/// To one digit, so that tasks that say nearly the same say it in the same words.
+double rounded_down(double value) {
+  const double digit = std::pow(10, std::floor(std::log10(value)));
+  return digit * std::floor(value / digit);
+}
+
 }  // namespace
 
 void end_late(const TaskSpec& spec, TaskRecord& record, const std::string& where) {
@@ -187,9 +193,9 @@ std::string SimulationLog::warnings() const {
   if (!(excess > 1)) return text;
   const bool rolls = rolled_ / most_rolled == excess;
   return fmt::format(
-      "{}{}a segment turned by {:.2g} rad {} in a step; above {:g} its motion is wrong: use a step_s of {:.1g}", text,
-      text.empty() ? "" : "; ", rolls ? rolled_ : tumbled_, rolls ? "about its axis, in contact" : "across its axis",
-      rolls ? most_rolled : most_tumbled, spec_.time.step_s / excess);
+      "{}{}a segment turned by more than {:g} rad {} in a step, where its motion is wrong: use a step_s of {:g}", text,
+      text.empty() ? "" : "; ", rolls ? most_rolled : most_tumbled,
+      rolls ? "about its axis, in contact," : "across its axis", rounded_down(spec_.time.step_s / excess));
 }
 
 void SimulationLog::fail(TaskOutcome outcome, int step, const std::string& why) {
