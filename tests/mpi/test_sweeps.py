@@ -206,9 +206,9 @@ class Outcomes(SweepCase):
     def test_a_task_beyond_its_share_of_memory_is_an_error_and_no_death(self):
         path = job("large", samples=1, segments=[6, 300000], guesses=["zero"], record={"solves": "summary"},
                    time={"step_s": 0.02, "steps": 1, "newton_iterations": 1})
-        bounded = self.rodsweep(2, "run", path, "--memory-limit-gb", "0.4", code=TASKS_FAILED)
+        bounded = self.rodsweep(2, "run", path, "--memory-limit-gb", "0.6", code=TASKS_FAILED)
         self.assertEqual(status("results/large.h5")["outcomes"], {"ok": 1, "error": 1})
-        self.assertIn("400 MB", bounded.stdout)
+        self.assertIn("600 MB", bounded.stdout)
         refused = self.rodsweep(0, "run", job("tiny"), "--memory-limit-gb", "0.005", code=USER_ERROR)
         self.assertIn("--memory-limit-gb", refused.stderr)
 
