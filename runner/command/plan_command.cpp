@@ -22,15 +22,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Extent {
+struct Bounds {
   std::int64_t least, most;
   std::string text() const { return least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most); }
 };
 
 template <class Member>
-Extent extent(const Plan& plan, Member member) {
+Bounds bounds(const Plan& plan, Member member) {
   const std::int64_t first = plan.task(0).*member;
-  Extent out{first, first};
+  Bounds out{first, first};
   for (const Task& task : plan.tasks()) {
     out.least = std::min<std::int64_t>(out.least, task.*member);
     out.most = std::max<std::int64_t>(out.most, task.*member);
@@ -158,8 +158,8 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
   run.program = options.program;
 
   std::string text = fmt::format("job      {} ({})\n", plan.job().name, plan.job().path.native());
-  text += fmt::format("tasks    {}, each {} segments, {} steps\n", plan.size(), extent(plan, &Task::segments).text(),
-                      extent(plan, &Task::steps).text());
+  text += fmt::format("tasks    {}, each {} segments, {} steps\n", plan.size(), bounds(plan, &Task::segments).text(),
+                      bounds(plan, &Task::steps).text());
   std::string swept;
   for (const ParameterColumn& parameter : plan.parameters())
     if (parameter.swept) swept += (swept.empty() ? "" : ", ") + parameter.path;

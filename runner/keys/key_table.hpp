@@ -36,15 +36,15 @@
 namespace rodsweep {
 
 /// A key of a job at a parameter point, and its value there.
-class Place {
+class KeyValue {
  public:
-  Place(const Point& point, const JobFiles& job, std::string path)
+  KeyValue(const Point& point, const JobFiles& job, std::string path)
       : point_(point), job_(job), path_(std::move(path)), value_(point.find(path_)) {}
 
   const JobFiles& job() const { return job_; }
   const std::string& path() const { return path_; }
-  Place of(const std::string& name) const { return {point_, job_, member(path_, name)}; }
-  Place item(std::size_t index) const { return {point_, job_, element(path_, index)}; }
+  KeyValue of(const std::string& name) const { return {point_, job_, member(path_, name)}; }
+  KeyValue item(std::size_t index) const { return {point_, job_, element(path_, index)}; }
 
   bool is_given() const { return value_ != nullptr; }
   // These throw std::logic_error if the key has no value of this type.
@@ -60,18 +60,18 @@ class Place {
 };
 
 // Reads the value of a key that is present. Overloads for other types are beside their tables.
-inline void read_value(const Place& at, double& value) { value = at.number(); }
-inline void read_value(const Place& at, bool& value) { value = at.number() != 0; }
-inline void read_value(const Place& at, int& value) { value = static_cast<int>(at.number()); }
-inline void read_value(const Place& at, std::uint64_t& value) { value = static_cast<std::uint64_t>(at.number()); }
-inline void read_value(const Place& at, Vector3& value) { value = Vector3::Map(at.value().number); }
-inline void read_value(const Place& at, std::string& value) { value = at.text(); }
-inline void read_value(const Place& at, std::filesystem::path& file) { file = at.job().files.at(at.text()).path; }
-inline void read_value(const Place& list, std::vector<std::filesystem::path>& files) {
+inline void read_value(const KeyValue& at, double& value) { value = at.number(); }
+inline void read_value(const KeyValue& at, bool& value) { value = at.number() != 0; }
+inline void read_value(const KeyValue& at, int& value) { value = static_cast<int>(at.number()); }
+inline void read_value(const KeyValue& at, std::uint64_t& value) { value = static_cast<std::uint64_t>(at.number()); }
+inline void read_value(const KeyValue& at, Vector3& value) { value = Vector3::Map(at.value().number); }
+inline void read_value(const KeyValue& at, std::string& value) { value = at.text(); }
+inline void read_value(const KeyValue& at, std::filesystem::path& file) { file = at.job().files.at(at.text()).path; }
+inline void read_value(const KeyValue& list, std::vector<std::filesystem::path>& files) {
   files.clear();
   for (std::size_t i = 0; list.item(i).is_given(); ++i) read_value(list.item(i), files.emplace_back());
 }
-inline void read_value(const Place& at, std::optional<double>& value) {
+inline void read_value(const KeyValue& at, std::optional<double>& value) {
   value.reset();
   if (!at.value().is_text()) value = at.number();
 }
@@ -161,7 +161,7 @@ class KeyTable {
   const std::vector<Key>& keys() const { return keys_; }
 
   /// Sets members from the object at a place. Members without a value are unchanged.
-  void fill(Owner& owner, const Place& object) const {
+  void fill(Owner& owner, const KeyValue& object) const {
     for (const auto& read : readers_) read(owner, object);
   }
 
@@ -170,23 +170,23 @@ class KeyTable {
   void add(Key key, const Member&... member) {
     bind<is_optional>(
         std::move(key), [](const Key& of, const auto& value) { return written(of, value); },
-        [](const Place& at, auto& value) { read_value(at, value); }, member...);
+        [](const KeyValue& at, auto& value) { read_value(at, value); }, member...);
   }
   template <bool is_optional, class Value, class... Member>
   void add(Key key, const Words<Value>& words, const Member&... member) {
     for (const auto& [word, value] : words) key.choices.emplace_back(word);
     bind<is_optional>(
         std::move(key), [&words](const Key&, Value value) { return word_of(words, value); },
-        [words](const Place& at, Value& value) { value = value_of(words, at.text()); }, member...);
+        [words](const KeyValue& at, Value& value) { value = value_of(words, at.text()); }, member...);
   }
   template <bool is_optional, class Part, class... Member>
   void add(Key key, const KeyTable<Part>& part, const Member&... member) {
     key.keys = part.keys();
     bind<is_optional>(
         std::move(key), [](const Key& of, const std::optional<Part>& value) { return written(of, value); },
-        [part](const Place& at, std::optional<Part>& value) {
+        [part](const KeyValue& at, std::optional<Part>& value) {
           value.reset();
-          const Place first = at.of(part.keys().front().name);
+          const KeyValue first = at.of(part.keys().front().name);
           if (!first.is_given()) return;
           value.emplace();
           if constexpr (KindsOf<Part>::tagged) *value = kind_named<Part>(first.text());
@@ -215,10 +215,10 @@ class KeyTable {
       }
     });
     if (!all) key.only_for = std::move(having);
-    readers_.emplace_back([=, name = key.name](Owner& owner, const Place& object) {
+    readers_.emplace_back([=, name = key.name](Owner& owner, const KeyValue& object) {
       const auto read_if_given = [&]([[maybe_unused]] auto& kind) {
         if constexpr ((std::is_invocable_v<const Member&, decltype(kind)> || ...))
-          if (const Place at = object.of(name); at.is_given()) read(at, member_of(kind, member...));
+          if (const KeyValue at = object.of(name); at.is_given()) read(at, member_of(kind, member...));
       };
       KindsOf<Owner>::visit(read_if_given, owner);
     });
@@ -226,7 +226,7 @@ class KeyTable {
   }
 
   std::vector<Key> keys_;
-  std::vector<std::function<void(Owner&, const Place& object)>> readers_;
+  std::vector<std::function<void(Owner&, const KeyValue& object)>> readers_;
 };
 
 }  // namespace rodsweep

@@ -11,10 +11,10 @@
 
 namespace rodsweep {
 
-static GuessKind read_guess(const Place& at);
+static GuessKind read_guess(const KeyValue& at);
 
 // Found by KeyTable among its overloads.
-static void read_value(const Place& at, std::shared_ptr<const GuessSpec>& guess) {
+static void read_value(const KeyValue& at, std::shared_ptr<const GuessSpec>& guess) {
   guess = std::make_shared<const GuessSpec>(GuessSpec{read_guess(at), ""});
 }
 
@@ -129,12 +129,12 @@ KeyTable<guess::Ritz> ritz_keys() {
 /// A kind of guess: its key with its parameters' keys, and how these are read.
 struct Kind {
   Key key;
-  std::function<GuessKind(const Place& parameters)> read;
+  std::function<GuessKind(const KeyValue& parameters)> read;
 };
 
 template <class Guess>
 Kind kind(const char* help, const KeyTable<Guess>& table = {}) {
-  return {object_key(Guess::name, help, table.keys()), [table](const Place& parameters) {
+  return {object_key(Guess::name, help, table.keys()), [table](const KeyValue& parameters) {
             Guess guess;
             table.fill(guess, parameters);
             return GuessKind(guess);
@@ -186,7 +186,7 @@ const std::vector<Kind>& kinds() {
 
 }  // namespace
 
-static GuessKind read_guess(const Place& at) {
+static GuessKind read_guess(const KeyValue& at) {
   const std::string& name = at.text();
   const auto found =
       std::find_if(kinds().begin(), kinds().end(), [&](const Kind& kind) { return kind.key.name == name; });

@@ -8,7 +8,7 @@
 namespace rodsweep {
 
 // An overload used by KeyTable.
-static void read_value(const Place& at, std::shared_ptr<const std::vector<Skeleton>>& trees) {
+static void read_value(const KeyValue& at, std::shared_ptr<const std::vector<Skeleton>>& trees) {
   const InputFile& file = at.job().files.at(at.text());
   try {
     const SkeletonFile& read = shared_skeleton(file.path, file.hash);
@@ -18,7 +18,7 @@ static void read_value(const Place& at, std::shared_ptr<const std::vector<Skelet
   }
 }
 
-static void read_value(const Place& at, std::shared_ptr<const std::vector<Curve>>& curves) {
+static void read_value(const KeyValue& at, std::shared_ptr<const std::vector<Curve>>& curves) {
   const InputFile& file = at.job().files.at(at.text());
   try {
     curves = {std::shared_ptr<void>(), &shared_curves(file.path, file.hash)};  // kept there

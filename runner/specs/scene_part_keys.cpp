@@ -51,14 +51,14 @@ const auto& solid_kinds() {
 }
 
 template <class Solid>
-void read_if(const SolidKind<Solid>& kind, const Place& at, Obstacle& obstacle) {
+void read_if(const SolidKind<Solid>& kind, const KeyValue& at, Obstacle& obstacle) {
   if (at.text() != kind.name) return;
   Solid solid;
   kind.table.fill(solid, at.of(kind.name));
   obstacle = solid;
 }
 
-Obstacle obstacle(const Place& at) {
+Obstacle obstacle(const KeyValue& at) {
   Obstacle found;
   std::apply([&](const auto&... kind) { (read_if(kind, at, found), ...); }, solid_kinds());
   if (const auto* space = std::get_if<HalfSpace>(&found); space && space->normal.isZero(0))
@@ -121,11 +121,11 @@ const KeyTable<GravityChange>& gravity_keys() {
 }
 
 template <class Item>
-void read_list(const KeyTable<Item>& keys, const Place& list, std::vector<Item>& items) {
+void read_list(const KeyTable<Item>& keys, const KeyValue& list, std::vector<Item>& items) {
   items.clear();
   const std::string& first = keys.keys().front().name;
   while (list.item(items.size()).of(first).is_given()) {
-    const Place item = list.item(items.size());
+    const KeyValue item = list.item(items.size());
     keys.fill(items.emplace_back(), item);
   }
 }
@@ -268,25 +268,27 @@ Key gravity_changes_key() {
                   object_key("change", "a change of gravity", gravity_keys().keys()));
 }
 
-void read_value(const Place& list, std::vector<double>& numbers) {
+void read_value(const KeyValue& list, std::vector<double>& numbers) {
   numbers.clear();
   while (list.item(numbers.size()).is_given()) numbers.push_back(list.item(numbers.size()).number());
 }
 
-void read_value(const Place& list, std::vector<Vector3>& points) {
+void read_value(const KeyValue& list, std::vector<Vector3>& points) {
   points.clear();
   while (list.item(points.size()).is_given())
     points.emplace_back(Vector3::Map(list.item(points.size()).value().number));
 }
 
-void read_value(const Place& list, std::vector<PrescribedLoad>& loads) { read_list(load_keys(), list, loads); }
-void read_value(const Place& list, std::vector<PrescribedMotion>& motions) { read_list(motion_keys(), list, motions); }
-void read_value(const Place& list, std::vector<GravityChange>& changes) { read_list(gravity_keys(), list, changes); }
+void read_value(const KeyValue& list, std::vector<PrescribedLoad>& loads) { read_list(load_keys(), list, loads); }
+void read_value(const KeyValue& list, std::vector<PrescribedMotion>& motions) {
+  read_list(motion_keys(), list, motions);
+}
+void read_value(const KeyValue& list, std::vector<GravityChange>& changes) { read_list(gravity_keys(), list, changes); }
 
-void read_value(const Place& list, std::vector<Obstacle>& obstacles) {
+void read_value(const KeyValue& list, std::vector<Obstacle>& obstacles) {
   obstacles.clear();
   while (true) {
-    const Place item = list.item(obstacles.size());
+    const KeyValue item = list.item(obstacles.size());
     if (!item.is_given()) return;
     obstacles.push_back(obstacle(item));
   }

@@ -20,15 +20,15 @@ KeyTable<ContactSettings> contact_keys();
 Key obstacles_key();
 
 /// Throws JobError if a half-space has no direction.
-void read_value(const Place& list, std::vector<Obstacle>& obstacles);
+void read_value(const KeyValue& list, std::vector<Obstacle>& obstacles);
 
 Key loads_key();
 Key motions_key();
 Key gravity_changes_key();
-void read_value(const Place& list, std::vector<double>& numbers);
-void read_value(const Place& list, std::vector<PrescribedLoad>& loads);
-void read_value(const Place& list, std::vector<PrescribedMotion>& motions);
-void read_value(const Place& list, std::vector<GravityChange>& changes);
-void read_value(const Place& list, std::vector<Vector3>& points);
+void read_value(const KeyValue& list, std::vector<double>& numbers);
+void read_value(const KeyValue& list, std::vector<PrescribedLoad>& loads);
+void read_value(const KeyValue& list, std::vector<PrescribedMotion>& motions);
+void read_value(const KeyValue& list, std::vector<GravityChange>& changes);
+void read_value(const KeyValue& list, std::vector<Vector3>& points);
 
 }  // namespace rodsweep

@@ -15,13 +15,13 @@ namespace rodsweep {
 namespace {
 
 /// A point of the axis of a segment.
-struct Place {
+struct AxisPoint {
   int rod = 0, segment = 0;
   double along_m = 0;  ///< from the centre
   double distance_m = std::numeric_limits<double>::infinity();
 };
 
-const Segment& segment(const Scene& scene, const Place& place) {
+const Segment& segment(const Scene& scene, const AxisPoint& place) {
   return scene.rods[static_cast<std::size_t>(place.rod)].segments[static_cast<std::size_t>(place.segment)];
 }
 
@@ -35,18 +35,18 @@ class SegmentFinder {
 
   /// The segments nearest to a point, among held ones or among all: several where they meet. Throws SceneError if there
   /// are none near it. `what`: for errors.
-  std::vector<Place> nearest(const Vector3& point, bool held, const char* what) const {
-    std::vector<Place> all;
+  std::vector<AxisPoint> nearest(const Vector3& point, bool held, const char* what) const {
+    std::vector<AxisPoint> all;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t r = 0; r < scene_.rods.size(); ++r)
       for (std::size_t s = 0; s < scene_.rods[r].segments.size(); ++s) {
-        const Place place = on_axis(point, r, s);
+        const AxisPoint place = on_axis(point, r, s);
         if ((held && !segment(scene_, place).is_static) || !(place.distance_m <= least + rounding_m_)) continue;
         least = std::min(least, place.distance_m);
         all.push_back(place);
       }
     all.erase(std::remove_if(all.begin(), all.end(),
-                             [&](const Place& place) { return place.distance_m > least + rounding_m_; }),
+                             [&](const AxisPoint& place) { return place.distance_m > least + rounding_m_; }),
               all.end());
     if (all.empty()) throw SceneError(std::string(what) + " needs a held segment; this scene has none");
     check_near(all.front(), what, point);
@@ -63,7 +63,7 @@ class SegmentFinder {
     return box.diagonal().norm();
   }
 
-  Place on_axis(const Vector3& point, std::size_t r, std::size_t s) const {
+  AxisPoint on_axis(const Vector3& point, std::size_t r, std::size_t s) const {
     const Rod& rod = scene_.rods[r];
     const Vector3 axis = rod.orientation[s] * Vector3::UnitZ();
     const double half = rod.segments[s].length_m / 2;
@@ -71,7 +71,7 @@ class SegmentFinder {
     return {static_cast<int>(r), static_cast<int>(s), along, (point - rod.position[s] - along * axis).norm()};
   }
 
-  void check_near(const Place& place, const char* what, const Vector3& at_m) const {
+  void check_near(const AxisPoint& place, const char* what, const Vector3& at_m) const {
     const Segment& found = segment(scene_, place);
     const double most = std::max({found.radius_m, found.length_m, rounding_m_});
     if (place.distance_m <= most) return;
@@ -86,10 +86,10 @@ class SegmentFinder {
 };
 
 void add(const PrescribedLoad& load, const SegmentFinder& places, Scene& scene) {
-  const std::vector<Place> found = places.nearest(load.at_m, false, "a load");
-  if (std::any_of(found.begin(), found.end(), [&](const Place& each) { return segment(scene, each).is_static; }))
+  const std::vector<AxisPoint> found = places.nearest(load.at_m, false, "a load");
+  if (std::any_of(found.begin(), found.end(), [&](const AxisPoint& each) { return segment(scene, each).is_static; }))
     throw SceneError("a load at " + text_of(load.at_m) + " is on a held segment; must be on one that can move");
-  const Place& place = found.front();
+  const AxisPoint& place = found.front();
   scene.loads.push_back(
       {place.rod, place.segment, load.force_n, load.torque_nm, Vector3(0, 0, place.along_m), load.schedule});
 }
@@ -152,7 +152,7 @@ void add(const std::vector<PrescribedMotion>& motions, const SegmentFinder& plac
   if (motions.empty()) return;
   std::map<std::pair<int, int>, Moved> moved;
   for (const PrescribedMotion& motion : motions)
-    for (const Place& place : places.nearest(motion.at_m, true, "a motion of a clamp")) {
+    for (const AxisPoint& place : places.nearest(motion.at_m, true, "a motion of a clamp")) {
       for (const MovingClamp& clamp : scene.clamps)
         if (clamp.rod == place.rod && clamp.segment == place.segment)
           throw SceneError("the clamp at " + text_of(motion.at_m) + " is moved by the scene itself; must be another");
