@@ -41,6 +41,8 @@ void log_segments(const Scene& scene, TaskRecord& record) {
   }
 }
 
+constexpr const char* slip = " turned past half a turn, where its torque changes sign: use more segments";
+
 /// The turns in a step [rad] up to which motions were found right: of a body whose spin term is explicit, and of a rod
 /// that rolls.
 constexpr double most_tumbled = 1, most_rolled = 7;
@@ -149,11 +151,10 @@ bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& 
          "a joint is open by " + std::to_string(gap) + " joint lengths");
     return false;
   }
-  if (const std::string joint = slipped_joint(); !joint.empty()) {
+  if (const std::string joint = slipped_ ? "" : slipped_joint(); !joint.empty()) {
     slipped_ = true;
     if (!scene.clamps.empty()) {  // a prescribed turn is lost
-      fail(TaskOutcome::torn, step,
-           joint + " turned past half a turn, where its torque changes sign: use more segments");
+      fail(TaskOutcome::torn, step, joint + slip);
       return false;
     }
   }
@@ -188,7 +189,7 @@ void SimulationLog::note_turns(const Scene& scene) {
 
 std::string SimulationLog::warnings() const {
   std::string text;
-  if (slipped_) text = "a joint turned past half a turn, where its torque changes sign: use more segments";
+  if (slipped_) text = std::string("a joint") + slip;
   const double excess = std::max(tumbled_ / most_tumbled, rolled_ / most_rolled);
   if (!(excess > 1)) return text;
   const bool rolls = rolled_ / most_rolled == excess;

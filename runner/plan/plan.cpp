@@ -85,7 +85,7 @@ void Plan::expand() {
     const SceneSpec scene = scene_spec(values, job_);
     check_scene(scene, job_);
     if (point % job_.samples == 0 && (built += segment_count(scene)) <= most_built) check_built(scene, job_);
-    check_method(values, guess_specs(values, guess_labels_, job_), job_);
+    check_method(values, guess_labels_, job_);
     contact = contact || rod_parameters(scene).contact;
     const TimeSpec time = time_spec(values, job_);
     balance = balance || time.balance;

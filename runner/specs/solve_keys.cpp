@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "runner/keys/key_table.hpp"
+#include "runner/specs/guess_keys.hpp"
 #include "runner/specs/plugin_keys.hpp"
 #include "runner/text/job_error.hpp"
 #include "runner/text/key_path.hpp"
@@ -225,12 +226,13 @@ OutputSpec output_spec(const nlohmann::ordered_json& record) {
 }
 
 /// Checks settings that are not available for CG on motions, which does not solve for multipliers.
-static void check_condensed(const Point& point, const std::vector<GuessSpec>& guesses, const JobFiles& job) {
+static void check_condensed(const Point& point, const std::vector<std::string>& labels, const JobFiles& job) {
   if (method(point) != Method::cg || point.text("solve.preconditioner") != "condensed") return;
   constexpr const char* not_allowed = "not allowed with the preconditioner \"condensed\" (its unknowns are motions)";
   if (point.text("solve.norm") != "true_residual")
     throw job_error(job.path, "solve.norm",
                     fmt::format("\"{}\" is {}; must be \"true_residual\"", point.text("solve.norm"), not_allowed));
+  const std::vector<GuessSpec> guesses = guess_specs(point, labels, job);
   for (std::size_t i = 0; i < guesses.size(); ++i)
     if (const char* name = find_guess<guess::Deflation>(guesses[i]) ? guess::Deflation::name
                            : find_guess<guess::Ritz>(guesses[i])    ? guess::Ritz::name
@@ -253,8 +255,8 @@ static void check_preconditioner(const Point& point, const JobFiles& job) {
   }
 }
 
-void check_method(const Point& point, const std::vector<GuessSpec>& guesses, const JobFiles& job) {
-  check_condensed(point, guesses, job);
+void check_method(const Point& point, const std::vector<std::string>& labels, const JobFiles& job) {
+  check_condensed(point, labels, job);
   check_preconditioner(point, job);
   if (const Method own = method(point);
       point.has("time.balance") && point.number("time.balance") != 0 && own != Method::cg && own != Method::direct)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "runner/inputs/input_file.hpp"
@@ -21,6 +22,7 @@ Evaluation evaluation(const Point& point);                      ///< default: pa
 OutputSpec output_spec(const nlohmann::ordered_json& record);
 
 /// Throws JobError if the solve method conflicts with other settings, such as a paired evaluation.
-void check_method(const Point& point, const std::vector<GuessSpec>& guesses, const JobFiles& job);
+/// `labels`: of the job's guesses.
+void check_method(const Point& point, const std::vector<std::string>& labels, const JobFiles& job);
 
 }  // namespace rodsweep
