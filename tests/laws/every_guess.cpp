@@ -19,26 +19,11 @@
 
 namespace rodsweep::test_every_guess {
 
-/// Its answer, a mean of the solutions, depends on their order and number.
-constexpr const char* python_guess = R"(
-class Guess:
-    def __init__(self, rods, options):
-        self.known = {}
-    def propose(self, system):
-        return self.known.get((system.rod, system.newton))
-    def accept(self, system, x):
-        place = system.rod, system.newton
-        self.known[place] = 0.5 * (self.known.get(place, x) + x)
-    def accept_total(self, rod, step, x):
-        self.known[rod, 0] = x
-)";
-
 /// Two rods of unequal length, and the files that guesses need.
 class Files {
  public:
   Files() {
     write("rods.csv", "0,0,0\n1,0,0\n\n0,0,1\n0.6,0,1\n");
-    write("guess.py", python_guess);
     Json data = job({});
     data.erase("guesses");
     data["kind"] = "dataset";
@@ -95,9 +80,9 @@ Samples samples(const guess::Knn&, const Files& files) {
   return {of("knn", {{"data", files.path("data.h5")}, {"k", 2}})};
 }
 Samples samples(const guess::Plugin&, const Files&) { return {watching}; }
-Samples samples(const guess::Python&, const Files& files) {
+Samples samples(const guess::Python&, const Files&) {
 #ifdef HAS_PYTHON
-  return {of("python", {{"file", files.path("guess.py")}})};
+  return {of("python", {{"file", PYTHON_GUESS}})};
 #else
   return {};
 #endif

@@ -16,23 +16,12 @@ SOURCE = Path(os.environ["SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "tests" / "mpi"))
 from program import SweepCase, rodsweep, status  # noqa: E402
 
-PYTHON_GUESS = """
-class Guess:
-    def __init__(self, rods, options):
-        self.known = {}
-    def propose(self, system):
-        return self.known.get((system.rod, system.newton))
-    def accept(self, system, x):
-        self.known[system.rod, system.newton] = x
-    def accept_total(self, rod, step, x):
-        self.known[rod, 0] = x
-"""
 PARAMETERS = {    # of guesses that have no defaults for all
     "copingnet": {"model": str(SOURCE / "network" / "pretrained" / "rods.h5"), "corrections": 2, "lag_steps": 2},
     "knn": {"data": "data.h5", "k": 2},
     "guarded": {"threshold": 0.5},
     "plugin": {"library": os.environ["WATCHING_PLUGIN"]},
-    "python": {"file": "guess.py"},
+    "python": {"file": str(SOURCE / "tests" / "laws" / "mean_guess.py")},
     "ritz": {"size": 3, "collected": 5, "lag_steps": 1},
 }
 SCHEMA = json.loads(rodsweep(0, "schema").stdout)
@@ -54,7 +43,6 @@ class EveryRun(SweepCase):
     @classmethod
     def setUpClass(cls):
         Path("rods.csv").write_text("0,0,0\n1,0,0\n\n0,0,1\n0.6,0,1\n", encoding="utf-8")
-        Path("guess.py").write_text(PYTHON_GUESS, encoding="utf-8")
         data = cls.job("data", kind="dataset", guesses=None, evaluation=None)
         assert rodsweep(0, "run", data, "-o", "data.h5").returncode == 0
 
