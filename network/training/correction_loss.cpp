@@ -23,7 +23,7 @@ double dot(const ScaledSystem<T>& a, const Tensor<T>& x, const Tensor<T>& y, std
   return static_cast<double>(part(x, a.first_place, s).cwiseProduct(part(y, a.first_place, s)).sum());
 }
 
-constexpr double smallest = 1e-8;  // limit of E / x^T A x; below is rounding
+constexpr double smallest_ratio = 1e-8;  // limit of E / x^T A x; below is rounding
 
 }  // namespace
 
@@ -58,9 +58,9 @@ double CorrectionLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>
   double loss = 0;
   std::vector<T> slope(systems);
   for (std::size_t s = 0; s < systems; ++s) {
-    const double ratio = std::max(energy[s] / a.solution_energy[s], smallest);
+    const double ratio = std::max(energy[s] / a.solution_energy[s], smallest_ratio);
     loss += std::sqrt(ratio);
-    slope[s] = ratio > smallest ? static_cast<T>(1 / (std::sqrt(ratio) * a.solution_energy[s])) : T(0);
+    slope[s] = ratio > smallest_ratio ? static_cast<T>(1 / (std::sqrt(ratio) * a.solution_energy[s])) : T(0);
   }
   if (!d_factors) return loss;
   Tensor<T> dx = Tensor<T>::Zero(6, r_.cols());  // dE/dx = -2 r

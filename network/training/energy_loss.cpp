@@ -17,7 +17,7 @@ double dot(const A& a, const B& b) {
   return static_cast<double>(a.cwiseProduct(b).sum());
 }
 
-constexpr double smallest = 1e-12;  // limit of E / x^T A x; below is rounding
+constexpr double smallest_energy_ratio = 1e-12;  // limit of E / x^T A x; below is rounding
 
 }  // namespace
 
@@ -44,7 +44,7 @@ double EnergyLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>& d,
   if (gradient) gradient->resize(6, d.cols());
   for (int s = 0; s < a.systems(); ++s) {
     const auto i = static_cast<std::size_t>(s);
-    const double ratio = std::max(energy_[i] / a.solution_energy[i], smallest);
+    const double ratio = std::max(energy_[i] / a.solution_energy[i], smallest_energy_ratio);
     loss += std::sqrt(ratio);
     if (!gradient) continue;
     // dE/dx0 = -2 v, v = P_k(A^) r_k, x0 = c d:  dE/dd = -2 (c v + (d.v) dc/dd),  dc/dd = (r^ - 2 c A^ d) / d.A^ d
