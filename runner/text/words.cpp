@@ -1,7 +1,3 @@
-#include "runner/text/nearest.hpp"
-
-#include <algorithm>
-
 #include "runner/text/words.hpp"
 
 namespace rodsweep {

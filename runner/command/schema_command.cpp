@@ -1,12 +1,12 @@
-#include "runner/file/reader_constants.hpp"
+#include "runner/command/commands.hpp"
 
 #include <set>
 #include <string>
 #include <vector>
 
 #include "runner/file/layout.hpp"
-#include "runner/file/planned_columns.hpp"
-#include "runner/keys/tables.hpp"
+#include "runner/keys/job_schema.hpp"
+#include "runner/keys/key.hpp"
 #include "runner/plan/task_outcome.hpp"
 #include "runner/specs/guess_keys.hpp"
 
@@ -22,7 +22,7 @@ void add_paths(const std::vector<Key>& keys, std::set<std::string>& names) {
 
 }  // namespace
 
-nlohmann::ordered_json reader_constants() {
+std::string schema_text() {
   std::vector<std::string> outcomes, planned;
   for (int i = 0; i < task_outcomes; ++i) outcomes.emplace_back(to_string(static_cast<TaskOutcome>(i)));
   visit_planned_columns(
@@ -33,11 +33,12 @@ nlohmann::ordered_json reader_constants() {
   add_paths(keys, paths);
   add_paths(guess_keys(), paths);
   const Key& iterations = *find_key(find_key(keys, "solve")->keys, "iterations");
-  return {{"schema_version", schema_version},
-          {"outcomes", outcomes},
-          {"planned", planned},
-          {"paths", paths},
-          {"gauss_seidel_iterations", *iterations.preset}};
+  return job_schema_text({{"x-files",
+                           {{"schema_version", schema_version},
+                            {"outcomes", outcomes},
+                            {"planned", planned},
+                            {"paths", paths},
+                            {"gauss_seidel_iterations", *iterations.preset}}}});
 }
 
 }  // namespace rodsweep

@@ -1,24 +1,49 @@
-#include "runner/file/resuming.hpp"
+#include "runner/file/opening.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
+#include <string>
+#include <vector>
 
-#include "runner/file/common_place.hpp"
+#include "runner/file/file_error.hpp"
 #include "runner/file/file_reading.hpp"
-#include "runner/file/heartbeat.hpp"
 #include "runner/file/inspect.hpp"
-#include "runner/file/resume_check.hpp"
+#include "runner/file/provenance.hpp"
 #include "runner/file/runs.hpp"
+#include "runner/file/stored_plan.hpp"
 #include "runner/file/task_reader.hpp"
+#include "runner/file/unfinished_file.hpp"
 #include "runner/mpi/mpi_session.hpp"
 
 namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Open MPI's file layer (4.1) copies the path to buffers of 256 bytes, and aborts if they overflow.
+void check_length(const fs::path& path) {
+  constexpr std::size_t most = 230;
+  if (path.native().size() > most)
+    throw FileError(
+        "{}: the path has {} bytes; must be at most {} for MPI-IO: name a shorter path with -o FILE, for example from "
+        "its folder",
+        path.native(), path.native().size(), most);
+}
+
+/// Creates a file with a new name, which no host can have cached. Leaves `token` empty in a folder that is read-only, as
+/// that of a file to resume may be: then the ranks look for that file.
+void create_in_folder_of(const fs::path& path, std::optional<UnfinishedFile>& token) {
+  try {
+    token.emplace(path).create();
+  } catch (const FileError&) {
+    token.reset();
+    if (!fs::exists(path)) throw;
+  }
+}
 
 /// Why a task marked as complete is run again.
 enum Again : std::uint8_t { not_again, failed, damaged };
@@ -28,7 +53,7 @@ void mend_states(const fs::path& path, const std::vector<std::uint8_t>& states) 
   if (std::all_of(states.begin(), states.end(), [](std::uint8_t state) { return state <= 1; })) return;
   const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
   for (std::size_t task = 0; task < states.size(); ++task)
-    if (states[task] > 1) hdf5::write_row<std::uint8_t>(file.id(), "/tasks/state", task, 0);
+    if (states[task] > 1) hdf5::RowDataset(file.id(), "/tasks/state").put<std::uint8_t>(task, 0);
 }
 
 /// For file systems without locks: throws FileError if the last run has not ended and its heartbeat is recent.
@@ -37,18 +62,18 @@ void refuse_living(const fs::path& path) {
   const double silent_s = silent_seconds(path);
   if (runs.empty() || !runs.back().end_utc.empty() || silent_s > alive_s) return;
   throw FileError(
-      fmt::format("{} seems to be in use by another run: its last activity was {:.0f} s ago (this file system has no "
-                  "locks); wait until it ends, or, if it was killed, for {:.0f} s without activity",
-                  path.native(), silent_s, alive_s));
+      "{} seems to be in use by another run: its last activity was {:.0f} s ago (this file system has no locks); wait "
+      "until it ends, or, if it was killed, for {:.0f} s without activity",
+      path.native(), silent_s, alive_s);
 }
 
 bool intact(const TaskReader& reader, std::int64_t task, TaskRecord& record, const fs::path& path) try {
   return reader.read_intact(task, record);
 } catch (const std::bad_alloc&) {
   throw FileError(
-      fmt::format("{}: the results of task {} exceed the memory limit of this process and cannot be verified: use "
-                  "fewer ranks per host, or raise --memory-limit-gb",
-                  path.native(), task));
+      "{}: the results of task {} exceed the memory limit of this process and cannot be verified: use fewer ranks per "
+      "host, or raise --memory-limit-gb",
+      path.native(), task);
 }
 
 struct Verified {
@@ -60,9 +85,7 @@ struct Verified {
 /// Returns none if `verifying` is Verify::stop on any rank.
 std::optional<Verified> to_run_again(const fs::path& path, const Plan& plan, const ResumePoint& point, Retry retry,
                                      MPI_Comm comm, const std::function<Verify()>& verifying) {
-  int rank = 0, size = 1;
-  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
-  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
+  const int rank = rank_in(comm), size = ranks_in(comm);
   const std::vector<std::uint8_t>& done = point.done;
   constexpr double golden = 0.618033988749895;
   const auto first = static_cast<std::size_t>(std::fmod(golden * point.runs, 1) * static_cast<double>(done.size()));
@@ -128,6 +151,32 @@ std::string note_of(const fs::path& path, const Verified& verified, std::int64_t
 }
 
 }  // namespace
+
+void check_common_place(const fs::path& path, MPI_Comm comm) {
+  std::optional<UnfinishedFile> token;
+  std::string name = path.filename().native();
+  on_first_rank(comm, [&] {
+    check_length(path);
+    make_folder_of(path);
+    create_in_folder_of(path, token);
+    if (token) name = token->path().filename().native();
+  });
+  name = broadcast(std::move(name), comm);
+  std::error_code error;
+  const bool found = fs::exists(path.parent_path() / name, error);
+  const std::vector<std::string> hosts = gather_distinct(found ? "" : host_name(), comm);
+  if (hosts.empty()) return;
+  throw FileError(
+      "{}: ranks on {} do not find there what rank 0 writes: name a file in a folder that all hosts share with -o "
+      "FILE; relative paths start at the current folder of each rank",
+      path.native(), fmt::join(hosts, ", "));
+}
+
+void on_first_rank(MPI_Comm comm, const std::function<void()>& work) try {
+  by_rank_0(comm, work);
+} catch (const CollectiveError& error) {
+  throw FileError(error.what());
+}
 
 std::optional<ResumedFile> resume_file(const fs::path& path, const Plan& plan, MPI_Comm comm, Retry retry,
                                        const std::function<Verify()>& verifying) {

@@ -1,5 +1,7 @@
-// What a run does before it opens a file to continue it: checks that the file is one of its plan and that no other run
-// writes it, and verifies the finished tasks.
+// What ranks do together before they open one file for writing.
+//
+// MPI-IO opens a file on all ranks at once: if one of them does not find it, the others wait for it forever. Before a run
+// continues a file, it checks that this is one of its plan and that no other run writes it, and verifies the finished tasks.
 #pragma once
 
 #include <mpi.h>
@@ -15,6 +17,13 @@
 #include "runner/plan/plan.hpp"
 
 namespace rodsweep {
+
+/// Collective; makes the folder of `path`. All ranks throw the same FileError unless every rank finds there what rank 0
+/// writes, and the path is short enough for MPI-IO.
+void check_common_place(const std::filesystem::path& path, MPI_Comm comm);
+
+/// Collective: runs `work` on rank 0. If it throws, every rank throws a FileError with the same text.
+void on_first_rank(MPI_Comm comm, const std::function<void()>& work);
 
 /// Which ended tasks a resumed sweep runs again.
 enum class Retry { none, failed };

@@ -1,4 +1,4 @@
-#include "runner/measure/training_sets.hpp"
+#include "runner/measure/shared_inputs.hpp"
 
 #include <algorithm>
 #include <map>
@@ -7,6 +7,8 @@
 
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/mpi/mpi_session.hpp"
+#include "runner/text/beside_program.hpp"
+#include "runner/training/model_file.hpp"
 
 namespace rodsweep {
 namespace {
@@ -29,6 +31,13 @@ std::shared_ptr<const KnnSet> read_set(const Wanted& wanted, std::optional<MPI_C
 
 }  // namespace
 
+std::shared_ptr<const Model> shared_model(const std::filesystem::path& path) {
+  static std::map<std::filesystem::path, std::shared_ptr<const Model>> models;
+  std::shared_ptr<const Model>& model = models[path];
+  if (!model) model = read_model(path).model;
+  return model;
+}
+
 std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, int simulations, KnnInputs inputs) {
   return read_set({data, simulations, inputs}, std::nullopt);
 }
@@ -44,6 +53,23 @@ void read_knn_sets(const Plan& plan, MPI_Comm ranks) {
   collectively(ranks, [&] {
     for (const Wanted& wanted : all) read_set(wanted, ranks);
   });
+}
+
+PluginSource plugin_source(const PluginFile& file) {
+  return {file.library, file.options, "plug-in " + file.library.filename().native()};
+}
+
+PluginSource plugin_source(const PythonFile& file, PythonClass kind) {
+  const std::filesystem::path library = beside_program({"rodsweep-python.so", "../lib/rodsweep/rodsweep-python.so"});
+  const std::string name = file.file.filename().native();
+  if (library.empty())
+    throw PluginError(
+        name + ": this program was built without Python; install pybind11-dev and python3-dev, and build it again");
+  const char* word = kind == PythonClass::guess ? "Guess" : "Preconditioner";
+  std::string options = std::string(word) + '\n' + std::filesystem::absolute(file.file).native() + '\n';
+  options += std::to_string(file.inputs.size()) + '\n';
+  for (const std::filesystem::path& input : file.inputs) options += std::filesystem::absolute(input).native() + '\n';
+  return {library, options + file.options, name};
 }
 
 }  // namespace rodsweep
