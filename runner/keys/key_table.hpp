@@ -63,6 +63,7 @@ class KeyValue {
 inline void read_value(const KeyValue& at, double& value) { value = at.number(); }
 inline void read_value(const KeyValue& at, bool& value) { value = at.number() != 0; }
 inline void read_value(const KeyValue& at, int& value) { value = static_cast<int>(at.number()); }
+inline void read_value(const KeyValue& at, std::int64_t& value) { value = static_cast<std::int64_t>(at.number()); }
 inline void read_value(const KeyValue& at, std::uint64_t& value) { value = static_cast<std::uint64_t>(at.number()); }
 inline void read_value(const KeyValue& at, Vector3& value) { value = Vector3::Map(at.value().number); }
 inline void read_value(const KeyValue& at, std::string& value) { value = at.text(); }

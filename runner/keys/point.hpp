@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace rodsweep {
@@ -47,8 +50,37 @@ class Point {
 
  private:
   friend class SweepSpace;
+  friend class ObjectPoint;
   const Index* index_ = nullptr;
   std::vector<Value> values_;
+};
+
+/// The values of an object without sweeps, such as the settings of a training.
+class ObjectPoint {
+ public:
+  explicit ObjectPoint(const nlohmann::ordered_json& object) : values_(object.flatten()) {
+    point_.index_ = &index_;
+    for (const auto& [pointer, value] : values_.items()) {  // "/network/steps"
+      std::string path = pointer.substr(std::min<std::size_t>(pointer.size(), 1));
+      std::replace(path.begin(), path.end(), '/', '.');
+      index_.emplace(std::move(path), static_cast<int>(point_.values_.size()));
+      Point::Value& added = point_.values_.emplace_back();
+      using State = Point::Value::State;
+      added.state = value.is_null() ? State::absent : value.is_string() ? State::text : State::number;
+      if (value.is_string()) added.text = &value.get_ref<const std::string&>();
+      if (value.is_number()) added.number[0] = value.get<double>();
+      if (value.is_boolean()) added.number[0] = value.get<bool>() ? 1 : 0;
+    }
+  }
+  ObjectPoint(const ObjectPoint&) = delete;
+  ObjectPoint& operator=(const ObjectPoint&) = delete;
+
+  operator const Point&() const { return point_; }
+
+ private:
+  nlohmann::ordered_json values_;
+  Point::Index index_;
+  Point point_;
 };
 
 }  // namespace rodsweep
