@@ -7,13 +7,11 @@
 #include <optional>
 #include <sstream>
 
-#include "runner/file/reader_constants.hpp"
-#include "runner/keys/job_schema.hpp"
+#include "runner/file/provenance.hpp"
 #include "runner/terminal/formats.hpp"
-#include "runner/text/nearest.hpp"
+#include "runner/text/words.hpp"
 
 namespace rodsweep {
-
 namespace {
 
 constexpr const char* about =
@@ -45,6 +43,104 @@ constexpr const char* main_help =
     "  query    tasks as a table            compare  two sweeps            summary  the main numbers\n"
     "  report   an HTML page                spatial  figures               export   CSV of all rows\n"
     "  new      a guess of your own         score    that guess against all others";
+
+constexpr const char* run_help =
+    "A single rank runs the tasks itself. With -n N, N workers run them, and a master that sleeps sends them: mpirun\n"
+    "starts N+1 ranks on this machine. On several hosts, start mpirun or srun yourself, with one rank more than "
+    "cores.\n"
+    "A training (kind \"train\") has no master. One rank uses all its cores, up to training.shards and\n"
+    "OMP_NUM_THREADS. On several hosts, use one rank per host.\n\n"
+    "SIGTERM, SIGINT (Ctrl-C), SIGUSR1, SIGUSR2, SIGXCPU and SIGHUP (unless ignored, as by nohup) stop the sweep\n"
+    "within seconds. Running tasks are abandoned, also within a solve; finished tasks are kept. mpirun passes SIGUSR1\n"
+    "and SIGUSR2 to all ranks and exits with 4. On SIGTERM and SIGINT it kills ranks that still run a second later,\n"
+    "and exits with 1. Every stopped sweep can be resumed.\n"
+    "A training stops between two steps; --resume continues it with bitwise equal results.\n\n"
+    "Examples:\n"
+    "  rodsweep run jobs/smoke.json                        one core, results/smoke.h5\n"
+    "  rodsweep run job.json -n 4                          4 cores\n"
+    "  mpirun -n 65 rodsweep run job.json -o out.h5 --resume\n"
+    "                                                      on several hosts; continues or creates out.h5: for batch\n"
+    "                                                      scripts\n"
+    "  rodsweep run job.json -o out.h5 --resume --retry-failed\n"
+    "                                                      also repeats errors, timeouts and crashes\n"
+    "  rodsweep run job.json -o out.h5 --resume --retry-failed --task-time-limit 3600\n"
+    "                                                      the same, with an hour for each task\n"
+    "  rodsweep run job.json -n 2 --memory-limit-gb 20\n"
+    "                                                      instead of an equal share for each worker\n"
+    "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples or more grid values.\n"
+    "                                                      Copies the results of out.h5 and runs the other tasks.\n"
+    "                                                      out.h5 stays unchanged; more.h5 equals a full new run.";
+
+constexpr const char* plan_help =
+    "Runs parts of up to three tasks (cheapest, median, most expensive), unless --no-probe is given. Of a training it\n"
+    "prints the size; `run` prints the time that is left. The data set of a training must exist.\n\n"
+    "Examples:\n"
+    "  rodsweep plan jobs/spatial_bending.json\n"
+    "  rodsweep plan jobs/spatial_bending.json --workers 64      resources to request from Slurm";
+
+constexpr const char* validate_help =
+    "Every job is expanded in full: `run` accepts jobs that pass. Nothing is computed or written. Models and data\n"
+    "sets of a job must exist, or another given job must make them (the job named NAME makes results/NAME.h5). A\n"
+    "warning is printed for values that may be in the wrong unit.\n\n"
+    "Examples:\n"
+    "  rodsweep validate my.json\n"
+    "  rodsweep validate data.json train.json use.json     each job uses the file of the one before\n"
+    "  rodsweep validate --later jobs/*.json               accepts missing models and data sets";
+
+constexpr const char* status_help =
+    "Only reads the file, also during a run. The exit code is 0 in every state: scripts can read --json. A running\n"
+    "sweep locks the file. Without file locks, it counts as running while it updates the time of the file. The\n"
+    "remaining time is the run's own estimate, from the cost of the tasks that are left and the pace of the last "
+    "ones.\n\n"
+    "Examples:\n"
+    "  rodsweep status results/demo.h5 --json | jq .pending\n"
+    "  rodsweep status results/demo.h5 --watch           a line every 5 seconds until it ends";
+
+constexpr const char* info_help =
+    "Examples:\n"
+    "  rodsweep info results/demo.h5                     job, axes, and all runs with versions\n"
+    "  rodsweep info results/demo.h5 --verify            compares the data with their checksums\n"
+    "  rodsweep info results/demo.h5 --job > again.json  writes the job of the results";
+
+constexpr const char* rerun_help =
+    "The job is read from FILE, not from its job file. Relative paths start at the folder of the job file. The new\n"
+    "file holds one task; all commands can read it: `rodsweep compare FILE NEW` says whether the results are the "
+    "same.\n"
+    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop it within seconds; then nothing is written.\n\n"
+    "Examples:\n"
+    "  rodsweep rerun results/demo.h5 12                               every step into results/demo-task-12.h5\n"
+    "  rodsweep rerun results/long.h5 3 --trajectory-every 100 -o three.h5\n"
+    "  rodsweep compare results/long.h5 three.h5\n\n"
+    "Exit codes:\n"
+    "  0  the task is ok\n"
+    "  2  error in the command line or the file; nothing was written\n"
+    "  3  the task failed; its results were written\n"
+    "  4  stopped early; nothing was written";
+
+constexpr const char* systems_help =
+    "The job is read from FILE, not from its job file. Relative paths start at the folder of the job file. Nothing is\n"
+    "kept in sweeps for this: the same task solves the same systems again.\n"
+    "In Python, rodsweep.systems(\"OUTPUT\") has A as a scipy matrix; rodsweep-matrices writes other formats.\n"
+    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop it within seconds; then nothing is written.\n\n"
+    "Examples:\n"
+    "  rodsweep systems results/demo.h5 12                      every tenth step into results/demo-systems-12.h5\n"
+    "  rodsweep systems results/demo.h5 12 --every 1 --first -o all.h5\n\n"
+    "Exit codes:\n"
+    "  0  written\n"
+    "  2  error in the command line or the file; nothing was written\n"
+    "  3  the task failed; its systems up to there are written\n"
+    "  4  stopped early; nothing was written";
+
+constexpr const char* merge_help =
+    "The files hold finished tasks of one job, for example shards of a job array. The new file holds all of them,\n"
+    "bit for bit as a single run would write them. It also records which run computed each task. Damaged tasks\n"
+    "(wrong checksum) are left to do. If several files hold a task, the first is used; a warning is printed if the\n"
+    "results differ. All other tasks are pending: `rodsweep run JOB -o OUTPUT --resume` runs them.\n\n"
+    "Examples:\n"
+    "  rodsweep run job.json --shard 1/2                results/NAME-1of2.h5, on one host\n"
+    "  rodsweep run job.json --shard 2/2                results/NAME-2of2.h5, on another host\n"
+    "  rodsweep merge results/NAME-*of2.h5 -o results/NAME.h5\n"
+    "  sbatch --array=1-16 jobs/slurm/sweep.sbatch job.json";
 
 constexpr const char* schema_help =
     "Editors use the schema for completion and checks; `rodsweep validate` checks more. Put the file into the\n"
@@ -84,97 +180,97 @@ CLI::Validator number_check(double least, bool may_be_least, const char* bound) 
 CLI::Validator above_zero() { return number_check(0, false, "above 0 and at most 1e9"); }
 CLI::Validator not_negative() { return number_check(0, true, "from 0 to 1e9"); }
 
+CLI::App* add_command(CLI::App& app, const char* name, const char* help, const std::string& footer) {
+  CLI::App* command = app.add_subcommand(name, help);
+  command->footer(footer);
+  return command;
+}
+
+/// An option with a value, whose kind is shown as `type`.
+template <class Value>
+CLI::Option* add_valued(CLI::App* command, const char* name, const char* type, Value& value, const char* help) {
+  return command->add_option(name, value, help)->type_name(type);
+}
+
+CLI::Option* add_results_file(CLI::App* command, std::filesystem::path& file) {
+  return command->add_option("FILE", file, "Results file (HDF5)")->required();
+}
+
 // Each function adds a command whose arguments fill the given options.
 
 CLI::App* add(CLI::App& app, RunOptions& run) {
-  CLI::App* command = app.add_subcommand("run", "Runs a job or continues it");
-  command->footer(with_exit_codes(run_help));
+  CLI::App* command = add_command(app, "run", "Runs a job or continues it", with_exit_codes(run_help));
   command->add_option("JOB", run.job, "Job file (JSON)")->required();
-  command->add_option("-o,--output", run.output, "Results file; never overwritten [results/NAME.h5]")
-      ->type_name("FILE");
-  command
-      ->add_option("-n,--workers", run.workers, "Start this many workers on this machine, by mpirun [1, or the ranks]")
-      ->check(CLI::Range(1, 10000))
-      ->type_name("N");
+  add_valued(command, "-o,--output", "FILE", run.output, "Results file; never overwritten [results/NAME.h5]");
+  add_valued(command, "-n,--workers", "N", run.workers,
+             "Start this many workers on this machine, by mpirun [1, or the ranks]")
+      ->check(CLI::Range(1, 10000));
   CLI::Option* resume = command->add_flag("--resume", run.resume, "Continue the results file if it exists");
   command
       ->add_flag("--retry-failed", run.retry_failed,
                  "With --resume: repeat tasks that ended in an error, timed out or crashed")
       ->needs(resume);
+  add_valued(command, "--task-time-limit", "SECONDS", run.task_time_limit_s,
+             "Stop tasks that take longer; overrides the job; 0: no limit")
+      ->check(not_negative());
+  add_valued(command, "--time-limit", "SECONDS", run.time_limit_s,
+             "End after this time: start no more tasks, abandon running ones")
+      ->check(above_zero());
+  add_valued(command, "--memory-limit-gb", "GB", run.memory_limit_gb,
+             "Memory per rank; a task that needs more ends in an error [90 % of the host's / its workers]")
+      ->check(number_check(0.1, true, "from 0.1 to 1e9"));  // the program itself needs most of 0.1 GB
+  add_valued(command, "--max-crashes", "N", run.max_crashes, "Mark a task as crashed after this many worker deaths [3]")
+      ->check(CLI::Range(1, 100));
+  add_valued(command, "--worker-timeout", "SECONDS", run.worker_timeout_s,
+             "Reassign tasks of a worker without heartbeat for this time; 0: no timeout [120]")
+      ->check(not_negative());
+  const auto shard = [&run](const std::string& text) {
+    run.shard = shard_of(text);
+    if (!run.shard) throw CLI::ValidationError("--shard", text + " is not allowed; must be I/N with 1 <= I <= N");
+  };
   command
-      ->add_option("--task-time-limit", run.task_time_limit_s,
-                   "Stop tasks that take longer; overrides the job; 0: no limit")
-      ->check(not_negative())
-      ->type_name("SECONDS");
-  command
-      ->add_option("--time-limit", run.time_limit_s, "End after this time: start no more tasks, abandon running ones")
-      ->check(above_zero())
-      ->type_name("SECONDS");
-  command
-      ->add_option("--memory-limit-gb", run.memory_limit_gb,
-                   "Memory per rank; a task that needs more ends in an error [90 % of the host's / its workers]")
-      ->check(number_check(0.1, true, "from 0.1 to 1e9"))  // the program itself needs most of 0.1 GB
-      ->type_name("GB");
-  command->add_option("--max-crashes", run.max_crashes, "Mark a task as crashed after this many worker deaths [3]")
-      ->check(CLI::Range(1, 100))
-      ->type_name("N");
-  command
-      ->add_option("--worker-timeout", run.worker_timeout_s,
-                   "Reassign tasks of a worker without heartbeat for this time; 0: no timeout [120]")
-      ->check(not_negative())
-      ->type_name("SECONDS");
-  command
-      ->add_option_function<std::string>(
-          "--shard",
-          [&run](const std::string& text) {
-            run.shard = shard_of(text);
-            if (!run.shard)
-              throw CLI::ValidationError("--shard", text + " is not allowed; must be I/N with 1 <= I <= N");
-          },
-          "Run part I of N of the tasks into a separate file, for `merge`")
+      ->add_option_function<std::string>("--shard", shard,
+                                         "Run part I of N of the tasks into a separate file, for `merge`")
       ->type_name("I/N");
-  command->add_option("--extend", run.extend, "Reuse the results of a smaller job")->type_name("OLD");
+  add_valued(command, "--extend", "OLD", run.extend, "Reuse the results of a smaller job");
   return command;
 }
 
 CLI::App* add(CLI::App& app, PlanOptions& plan) {
-  CLI::App* command = app.add_subcommand("plan", "Estimates tasks, bytes and core-hours of a job");
-  command->footer(with_exit_codes(plan_help));
+  CLI::App* command =
+      add_command(app, "plan", "Estimates tasks, bytes and core-hours of a job", with_exit_codes(plan_help));
   command->add_option("JOB", plan.job, "Job file (JSON)")->required();
   command->add_flag_callback(
       "--no-probe", [&plan] { plan.probe = false; }, "Run no tasks, estimate no core-hours");
-  command->add_option("--workers", plan.workers, "Estimate the time with N workers [one per core of this host]")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
+  add_valued(command, "--workers", "N", plan.workers, "Estimate the time with N workers [one per core of this host]")
+      ->check(CLI::Range(1, 1000000));
   command->add_flag("--json", plan.json, "Print JSON");
   return command;
 }
 
 CLI::App* add(CLI::App& app, ValidateOptions& validate) {
-  CLI::App* command = app.add_subcommand("validate", "Checks jobs without running them");
-  command->footer(with_exit_codes(validate_help));
+  CLI::App* command = add_command(app, "validate", "Checks jobs without running them", with_exit_codes(validate_help));
   command->add_option("JOB", validate.jobs, "Job files (JSON)")->required();
   command->add_flag("--later", validate.later, "Accept missing models and data sets");
   return command;
 }
 
 CLI::App* add(CLI::App& app, StatusOptions& status) {
-  CLI::App* command = app.add_subcommand("status", "Shows the progress of a sweep or training");
-  command->footer(with_exit_codes(status_help));
-  command->add_option("FILE", status.file, "Results file (HDF5)")->required();
+  CLI::App* command =
+      add_command(app, "status", "Shows the progress of a sweep or training", with_exit_codes(status_help));
+  add_results_file(command, status.file);
   command->add_flag("--json", status.json, "Print JSON");
-  command->add_option("--watch", status.watch_s, "Repeat at this interval until the sweep ends")
+  add_valued(command, "--watch", "[SECONDS]", status.watch_s, "Repeat at this interval until the sweep ends")
       ->expected(0, 1)
       ->default_str("5")
-      ->check(above_zero())
-      ->type_name("[SECONDS]");
+      ->check(above_zero());
   return command;
 }
 
 CLI::App* add(CLI::App& app, InfoOptions& info) {
-  CLI::App* command = app.add_subcommand("info", "Shows the origin of results, and verifies them");
-  command->footer(with_exit_codes(info_help));
-  command->add_option("FILE", info.file, "Results file (HDF5)")->required();
+  CLI::App* command =
+      add_command(app, "info", "Shows the origin of results, and verifies them", with_exit_codes(info_help));
+  add_results_file(command, info.file);
   CLI::Option* verify = command->add_flag("--verify", info.verify, "Compare every finished task with its checksum");
   CLI::Option* job = command->add_flag("--job", info.job, "Print only the job, byte for byte");
   CLI::Option* json = command->add_flag("--json", info.json, "Print JSON");
@@ -183,35 +279,30 @@ CLI::App* add(CLI::App& app, InfoOptions& info) {
 }
 
 CLI::App* add(CLI::App& app, RerunOptions& rerun) {
-  CLI::App* command = app.add_subcommand("rerun", "Repeats one task of a sweep and records its trajectory");
-  command->footer(rerun_help);
-  command->add_option("FILE", rerun.file, "Results file (HDF5)")->required();
+  CLI::App* command = add_command(app, "rerun", "Repeats one task of a sweep and records its trajectory", rerun_help);
+  add_results_file(command, rerun.file);
   command->add_option("TASK", rerun.task, "Number of the task, from 0")->required();
-  command->add_option("-o,--output", rerun.output, "Results file; never overwritten [FILE-task-TASK.h5]")
-      ->type_name("FILE");
-  command->add_option("--trajectory-every", rerun.trajectory_every, "Record a frame every K steps [1]")
-      ->check(above_zero())
-      ->type_name("K");
+  add_valued(command, "-o,--output", "FILE", rerun.output, "Results file; never overwritten [FILE-task-TASK.h5]");
+  add_valued(command, "--trajectory-every", "K", rerun.trajectory_every, "Record a frame every K steps [1]")
+      ->check(above_zero());
   return command;
 }
 
 CLI::App* add(CLI::App& app, SystemsOptions& systems) {
-  CLI::App* command = app.add_subcommand("systems", "Repeats one task and writes the linear systems that it solves");
-  command->footer(systems_help);
-  command->add_option("FILE", systems.file, "Results file (HDF5)")->required();
+  CLI::App* command =
+      add_command(app, "systems", "Repeats one task and writes the linear systems that it solves", systems_help);
+  add_results_file(command, systems.file);
   command->add_option("TASK", systems.task, "Number of the task, from 0")->required();
-  command->add_option("-o,--output", systems.output, "New file; never overwritten [FILE-systems-TASK.h5]")
-      ->type_name("FILE");
-  command->add_option("--every", systems.every, "Systems of every Kth step [10]")->check(above_zero())->type_name("K");
+  add_valued(command, "-o,--output", "FILE", systems.output, "New file; never overwritten [FILE-systems-TASK.h5]");
+  add_valued(command, "--every", "K", systems.every, "Systems of every Kth step [10]")->check(above_zero());
   command->add_flag("--first", systems.first, "Only those of first Newton iterations");
   return command;
 }
 
 CLI::App* add(CLI::App& app, MergeOptions& merge) {
-  CLI::App* command = app.add_subcommand("merge", "Merges results files of the same job");
-  command->footer(with_exit_codes(merge_help));
+  CLI::App* command = add_command(app, "merge", "Merges results files of the same job", with_exit_codes(merge_help));
   command->add_option("FILE", merge.files, "Results files (HDF5)")->required();
-  command->add_option("-o,--output", merge.output, "Merged file; never overwritten")->type_name("FILE")->required();
+  add_valued(command, "-o,--output", "FILE", merge.output, "Merged file; never overwritten")->required();
   return command;
 }
 
@@ -270,9 +361,9 @@ Command parse_command_line(int argc, const char* const* argv) {
   };
   offer(run, plan, validate, status, info, rerun, systems, merge);
 
-  CLI::App* schema = app.add_subcommand("schema", "Prints the JSON Schema of jobs, for editors");
-  schema->footer(schema_help);
-  schema->callback([&] { chosen = PrintedText{job_schema_text({{"x-files", reader_constants()}})}; });
+  add_command(app, "schema", "Prints the JSON Schema of jobs, for editors", schema_help)->callback([&] {
+    chosen = PrintedText{schema_text()};
+  });
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   const std::string first = argc > 1 ? argv[1] : "-";
   if (first[0] != '-' && std::none_of(commands.begin(), commands.end(),

@@ -4,16 +4,9 @@
 #include <string>
 #include <variant>
 
+#include "runner/command/commands.hpp"
 #include "runner/command/exit_codes.hpp"
-#include "runner/command/external_command.hpp"
-#include "runner/command/info_command.hpp"
-#include "runner/command/merge_command.hpp"
-#include "runner/command/plan_command.hpp"
-#include "runner/command/rerun_command.hpp"
 #include "runner/command/run_command.hpp"
-#include "runner/command/status_command.hpp"
-#include "runner/command/systems_command.hpp"
-#include "runner/command/validate_command.hpp"
 
 namespace rodsweep {
 

@@ -1,4 +1,4 @@
-#include "runner/command/foreign_exit.hpp"
+#include "runner/command/process_end.hpp"
 
 #include <dlfcn.h>
 #include <sys/syscall.h>
@@ -6,9 +6,7 @@
 
 #include <atomic>
 #include <cstdio>
-#include <cstdlib>
 
-#include "runner/command/process_end.hpp"
 #include "solver/plugin/user_call.hpp"
 
 namespace rodsweep {

@@ -13,17 +13,20 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
-#include "runner/command/next_command.hpp"
+#include "runner/command/commands.hpp"
+#include "runner/command/run_command.hpp"
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/file/durable.hpp"
 #include "runner/text/beside_program.hpp"
 
 namespace rodsweep {
 namespace {
+
+namespace fs = std::filesystem;
 
 std::vector<std::string> own_arguments() {
   std::ifstream in("/proc/self/cmdline", std::ios::binary);
@@ -79,6 +82,8 @@ class ForwardedSignals {
   std::_Exit(static_cast<int>(ExitCode::user_error));
 }
 
+bool is_program(const fs::path& path) { return fs::is_regular_file(path) && access(path.c_str(), X_OK) == 0; }
+
 }  // namespace
 
 bool is_launched() {
@@ -129,6 +134,35 @@ ExitCode launch(int ranks, Console& console) {
   while (waitpid(mpirun, &status, 0) < 0 && errno == EINTR) {
   }
   return static_cast<ExitCode>(WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
+}
+
+fs::path find_command(const std::string& name, const fs::path& program, const std::string& path) {
+  const std::string file = "rodsweep-" + name;
+  std::string script = name + ".py";
+  std::replace(script.begin(), script.end(), '-', '_');
+  std::vector<fs::path> places{program.parent_path() / file, program.parent_path().parent_path() / "analysis" / script};
+  std::istringstream folders(path);
+  for (std::string folder; std::getline(folders, folder, ':');) places.push_back(fs::path(folder) / file);
+  const auto found = std::find_if(places.begin(), places.end(), is_program);
+  return found == places.end() ? fs::path() : *found;
+}
+
+ExitCode execute(const ExternalCommand& command, Console& console) {
+  std::error_code error;
+  const char* path = std::getenv("PATH");
+  const fs::path program =
+      find_command(command.name, fs::read_symlink("/proc/self/exe", error), path == nullptr ? "" : path);
+  if (program.empty()) {
+    console.raw_error(command.unknown);
+    return ExitCode::user_error;
+  }
+  std::vector<const char*> arguments{program.c_str()};
+  for (const std::string& word : command.words) arguments.push_back(word.c_str());
+  arguments.push_back(nullptr);
+  execv(program.c_str(), const_cast<char* const*>(arguments.data()));
+  console.error(fmt::format("{} cannot be started: {}{}", program.native(), std::strerror(errno),
+                            errno == ENOENT ? "; it needs Python 3: apt-get install python3-h5py python3-scipy" : ""));
+  return ExitCode::user_error;
 }
 
 }  // namespace rodsweep

@@ -19,10 +19,9 @@
 #include <exception>
 
 #include "runner/command/command_line.hpp"
-#include "runner/command/foreign_exit.hpp"
 #include "runner/command/launch.hpp"
-#include "runner/command/next_command.hpp"
 #include "runner/command/process_end.hpp"
+#include "runner/command/run_command.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/provenance.hpp"

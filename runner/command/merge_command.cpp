@@ -1,4 +1,4 @@
-#include "runner/command/merge_command.hpp"
+#include "runner/command/commands.hpp"
 
 #include <fmt/format.h>
 #include <mpi.h>
@@ -13,12 +13,11 @@
 #include "runner/file/inspect.hpp"
 #include "runner/file/record.hpp"
 #include "runner/file/results_file.hpp"
-#include "runner/file/resume_check.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/stored_plan.hpp"
 #include "runner/file/task_reader.hpp"
 #include "runner/file/unfinished_file.hpp"
-#include "runner/job/job_difference.hpp"
+#include "runner/job/job.hpp"
 #include "runner/terminal/formats.hpp"
 
 namespace rodsweep {
@@ -50,10 +49,10 @@ std::vector<Part> open_parts(const std::vector<fs::path>& files, const FileSumma
   for (const fs::path& path : files) {
     const FileSummary file = inspect(path);
     if (file.rerun_of_task != first.rerun_of_task)
-      throw FileError(fmt::format("{} and {} are reruns of different tasks", path.native(), first.path.native()));
+      throw FileError("{} and {} are reruns of different tasks", path.native(), first.path.native());
     if (const auto found = first_difference(plan.job(), stored_job(file, {}, MissingFiles::accepted)))
-      throw FileError(fmt::format("{} and {} are of different jobs: {} is {} and {}; must be of the same job",
-                                  first.path.native(), path.native(), found->key, found->now, found->before));
+      throw FileError("{} and {} are of different jobs: {} is {} and {}; must be of the same job", first.path.native(),
+                      path.native(), found->key, found->now, found->before);
     check_same_plan(path, plan, "Merge with that revision");
     parts.push_back({path, TaskReader(path), runs});
     runs += static_cast<int>(file.runs.size());
@@ -116,8 +115,8 @@ ExitCode execute(const MergeOptions& options, Console& console) {
         "results differ between files for {} (machines round differently); the first file's results are used",
         these(different)));
   console.result(fmt::format("{}: {} of {} of {} from {}{}", options.output.native(), done,
-                             counted(plan.size(), "task"), first.job_name,
-                             counted(static_cast<std::int64_t>(parts.size()), "file"),
+                             count_text(plan.size(), "task"), first.job_name,
+                             count_text(static_cast<std::int64_t>(parts.size()), "file"),
                              done == plan.size() ? "" : "; run the job with this output and --resume to complete it"));
   return code;
 }

@@ -1,23 +1,22 @@
-#include "runner/command/plan_command.hpp"
-
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "runner/command/next_command.hpp"
+#include "network/processor/coping_net.hpp"
+#include "runner/command/commands.hpp"
 #include "runner/command/plan_estimate.hpp"
-#include "runner/command/training_plan.hpp"
+#include "runner/command/run_command.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/measure/host_memory.hpp"
-#include "runner/measure/inputs.hpp"
+#include "runner/measure/plan_check.hpp"
 #include "runner/terminal/formats.hpp"
 #include "runner/text/beside_program.hpp"
+#include "runner/training/learning_sets.hpp"
 
 namespace rodsweep {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -86,8 +85,7 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Probe>&
   const auto available = static_cast<std::int64_t>(free_bytes(folder));
   if (const std::int64_t bytes = file_bytes(plan); bytes > available)
     warnings.push_back(
-        fmt::format("the file needs {}, but {} has {} free: record less, or choose another disk with "
-                    "run -o",
+        fmt::format("the file needs {}, but {} has {} free: record less, or choose another disk with run -o",
                     bytes_text(bytes), folder.native(), bytes_text(available)));
   for (const Probe& p : probes)
     if (p.outcome == TaskOutcome::timed_out && p.steps == 0)
@@ -99,7 +97,7 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Probe>&
   const int workers = workers_of(options);
   if (const double wall_s = probes.empty() ? 0 : estimate(plan, probes).wall_s(workers); wall_s > month_s)
     warnings.push_back(fmt::format("{} with {}: fewer samples or steps, or more workers, bring it below a month",
-                                   duration_text(wall_s), counted(workers, "worker")));
+                                   duration_text(wall_s), count_text(workers, "worker")));
   return warnings;
 }
 
@@ -175,8 +173,8 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
     const auto [shortest, longest] = std::minmax_element(
         probes.begin(), probes.end(), [](const Probe& a, const Probe& b) { return a.seconds < b.seconds; });
     text += fmt::format("time     about {:.2g} core-hours: {} with {} (from {} tried, {} to {} each)\n",
-                        needs.core_s / 3600, duration_text(needs.wall_s(workers)), counted(workers, "worker"),
-                        counted(static_cast<std::int64_t>(probes.size()), "task"), duration_text(shortest->seconds),
+                        needs.core_s / 3600, duration_text(needs.wall_s(workers)), count_text(workers, "worker"),
+                        count_text(static_cast<std::int64_t>(probes.size()), "task"), duration_text(shortest->seconds),
                         duration_text(longest->seconds));
     text += master_text(needs, workers);
     text += slurm_text(needs, options);
@@ -192,6 +190,65 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
   if (workers > 1 && workers <= cores_here()) run.workers = workers;
   text += "next     " + run_line(run, ranks_for(workers));
   return text;
+}
+
+/// Sizes of a training. The numbers of examples and steps are upper bounds: a system whose base guess is exact gives no
+/// example, and later Newton iterations may be left out.
+struct Extent {
+  std::size_t parameters = 0;
+  std::int64_t training_simulations = 0, validation_simulations = 0;
+  std::int64_t training_examples = 0, validation_examples = 0;
+  std::int64_t steps_per_epoch = 0, steps = 0;
+};
+
+Extent extent_of(const TrainingJob& job, const LearningSets& sets) {
+  Extent extent;
+  extent.parameters = CopingNet<float>(job.network, 0).parameters().values().size();
+  extent.training_simulations = static_cast<std::int64_t>(sets.training().size());
+  extent.validation_simulations = static_cast<std::int64_t>(sets.validation().size());
+  for (const LearningSets::Simulation& simulation : sets.training())
+    extent.training_examples += (1 + job.copies().count) * systems_of(simulation);
+  for (const LearningSets::Simulation& simulation : sets.validation())
+    extent.validation_examples += systems_of(simulation);
+  extent.steps_per_epoch = extent.training_examples / job.training.batch;
+  extent.steps = extent.steps_per_epoch * job.training.epochs;
+  return extent;
+}
+
+nlohmann::ordered_json to_json(const Job& job, const TrainingJob& training, const Extent& extent) {
+  return {{"job", job.path.native()},
+          {"name", job.name},
+          {"data", paths_of(training.data)},
+          {"parameters", extent.parameters},
+          {"training_simulations", extent.training_simulations},
+          {"validation_simulations", extent.validation_simulations},
+          {"most_training_examples", extent.training_examples},
+          {"most_validation_examples", extent.validation_examples},
+          {"epochs", training.training.epochs},
+          {"most_steps", extent.steps}};
+}
+
+std::string to_text(const PlanOptions& options, const Job& job, const TrainingJob& training, const Extent& extent) {
+  RunOptions run;
+  run.job = options.job;
+  run.program = options.program;
+  return fmt::format(
+      "job       {} ({})\n"
+      "data      {}\n"
+      "examples  at most {} from {} simulations for training, {} from {} for validation\n"
+      "network   {} parameters\n"
+      "steps     at most {}: {} in each of {} epochs\n"
+      "next      {}",
+      job.name, job.path.native(), paths_of(training.data), extent.training_examples, extent.training_simulations,
+      extent.validation_examples, extent.validation_simulations, extent.parameters, extent.steps,
+      extent.steps_per_epoch, training.training.epochs, run_line(run, 1));
+}
+
+ExitCode show_training_plan(const PlanOptions& options, const Job& job, Console& console) {
+  const TrainingJob training = training_job(job.values, job.path);
+  const Extent extent = extent_of(training, LearningSets(training, job));
+  console.result(options.json ? json_text(to_json(job, training, extent)) : to_text(options, job, training, extent));
+  return ExitCode::ok;
 }
 
 }  // namespace

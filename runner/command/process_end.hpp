@@ -19,4 +19,11 @@ bool process_is_ending() noexcept;
 /// Ends this rank after others were lost, without MPI_Finalize, which would wait for them. Rank 0 also ends the others.
 [[noreturn]] void leave_lost_ranks(const MpiSession& mpi, ExitCode code);
 
+// The program's own exit(), _exit() and the like, which libraries find before those of the C library. An end of the
+// process that a user's code asks for, or with exit code 0 any other library, becomes an error with a message.
+// Processes that such code forks may end as they like.
+
+/// Sets the exit code of such an end (default: user_error), and the end of its message.
+void expect_no_exit(ExitCode code, const char* advice) noexcept;
+
 }  // namespace rodsweep

@@ -2,18 +2,31 @@
 // a sweep or makes a data set (sweep_run.cpp).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "runner/command/exit_codes.hpp"
-#include "runner/command/shard.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/job/job.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/console.hpp"
 
 namespace rodsweep {
+
+/// A shard: one of the parts of a sweep's tasks (`run --shard 3/16`). Each shard has its own results file; `merge`
+/// combines these files.
+struct Shard {
+  int number = 1;  ///< from 1
+  int of = 1;
+};
+
+/// Parses "3/16"; none if `text` is not a valid shard.
+std::optional<Shard> shard_of(const std::string& text);
+
+/// The number of tasks in the shard, for a sweep of `tasks` tasks.
+std::int64_t share_of(const Shard& shard, std::int64_t tasks);
 
 struct RunOptions {
   std::filesystem::path job;
@@ -32,33 +45,6 @@ struct RunOptions {
   std::string command;                          ///< the whole command line, for /runs
 };
 
-inline constexpr const char* run_help =
-    "A single rank runs the tasks itself. With -n N, N workers run them, and a master that sleeps sends them: mpirun\n"
-    "starts N+1 ranks on this machine. On several hosts, start mpirun or srun yourself, with one rank more than "
-    "cores.\n"
-    "A training (kind \"train\") has no master. One rank uses all its cores, up to training.shards and\n"
-    "OMP_NUM_THREADS. On several hosts, use one rank per host.\n\n"
-    "SIGTERM, SIGINT (Ctrl-C), SIGUSR1, SIGUSR2, SIGXCPU and SIGHUP (unless ignored, as by nohup) stop the sweep\n"
-    "within seconds. Running tasks are abandoned, also within a solve; finished tasks are kept. mpirun passes SIGUSR1\n"
-    "and SIGUSR2 to all ranks and exits with 4. On SIGTERM and SIGINT it kills ranks that still run a second later,\n"
-    "and exits with 1. Every stopped sweep can be resumed.\n"
-    "A training stops between two steps; --resume continues it with bitwise equal results.\n\n"
-    "Examples:\n"
-    "  rodsweep run jobs/smoke.json                        one core, results/smoke.h5\n"
-    "  rodsweep run job.json -n 4                          4 cores\n"
-    "  mpirun -n 65 rodsweep run job.json -o out.h5 --resume\n"
-    "                                                      on several hosts; continues or creates out.h5: for batch\n"
-    "                                                      scripts\n"
-    "  rodsweep run job.json -o out.h5 --resume --retry-failed\n"
-    "                                                      also repeats errors, timeouts and crashes\n"
-    "  rodsweep run job.json -o out.h5 --resume --retry-failed --task-time-limit 3600\n"
-    "                                                      the same, with an hour for each task\n"
-    "  rodsweep run job.json -n 2 --memory-limit-gb 20\n"
-    "                                                      instead of an equal share for each worker\n"
-    "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples or more grid values.\n"
-    "                                                      Copies the results of out.h5 and runs the other tasks.\n"
-    "                                                      out.h5 stays unchanged; more.h5 equals a full new run.";
-
 /// Starts PETSc. All ranks return the same result. Throws CollectiveError on all ranks if the run cannot start (a job
 /// or file error). Any other exception concerns one rank only; the caller must abort, because the others wait for it.
 ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& console);
@@ -76,5 +62,29 @@ std::filesystem::path output_of(const RunOptions& options, const std::string& jo
 
 /// The row of /runs for a start on these ranks.
 Provenance provenance_of(const RunOptions& options, const MpiSession& mpi, const Placement& where);
+
+// The command line to suggest next: a run, or a script of analysis/ on a new file.
+
+/// Ranks of a sweep with this many workers: one more for the master, which sleeps; 1 for a single worker.
+int ranks_for(int workers);
+
+/// The command for this job on this many ranks: "mpirun --oversubscribe -n 3 rodsweep run jobs/demo.json", or
+/// "rodsweep run jobs/demo.json -n 2" with options.workers.
+std::string run_line(const RunOptions& options, int ranks);
+
+/// "stopped early by SIGTERM; nothing is lost. To continue: " and the command.
+std::string stopped_text(int signal, RunOptions options, int ranks);
+
+/// For a shard's file with the default name: "rodsweep merge results/demo-*of4.h5 -o results/demo.h5"; for other names:
+/// "rodsweep merge SHARDS... -o FILE".
+std::string merge_line(const std::string& program, const std::filesystem::path& file, const Shard& shard);
+
+/// "rodsweep compare results/demo.h5 results/demo-task-12.h5".
+std::string compare_line(const std::string& program, const std::filesystem::path& file,
+                         const std::filesystem::path& other);
+
+/// "/usr/bin/python3 analysis/summary.py results/demo.h5". The script is that of this program's source tree or
+/// installation; its path is relative to the current folder where possible.
+std::string script_line(const std::string& script, const std::filesystem::path& file);
 
 }  // namespace rodsweep

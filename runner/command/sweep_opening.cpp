@@ -2,25 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
+#include <numeric>
 
 #include "runner/command/launch.hpp"
-#include "runner/command/next_command.hpp"
-#include "runner/command/sweep_tasks.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/measure/host_memory.hpp"
-#include "runner/measure/inputs.hpp"
-#include "runner/measure/training_sets.hpp"
+#include "runner/measure/plan_check.hpp"
+#include "runner/measure/shared_inputs.hpp"
 #include "runner/terminal/formats.hpp"
 
 namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
+
 using Seconds = std::chrono::duration<double>;
 
 Plan plan_of(const RunOptions& options, const Job& job) {
@@ -40,8 +40,7 @@ std::optional<Extension> open_extension(const RunOptions& options, const fs::pat
   if (!options.extend) return std::nullopt;
   std::error_code error;
   if (fs::equivalent(*options.extend, path, error)) {
-    throw FileError(fmt::format("{} is the file to extend and cannot be the output: name another file with -o FILE",
-                                path.native()));
+    throw FileError("{} is the file to extend and cannot be the output: name another file with -o FILE", path.native());
   }
   return Extension(*options.extend, plan);
 }
@@ -53,8 +52,8 @@ void check_shard(const fs::path& path, const Shard& shard) {
   if (runs.empty() || runs.back().provenance.shard == 0) return;
   const Provenance& last = runs.back().provenance;
   if (last.shard != shard.number || last.shards != shard.of)
-    throw FileError(fmt::format("{} holds shard {}/{}, not {}/{}: continue that one, or name another file with -o FILE",
-                                path.native(), last.shard, last.shards, shard.number, shard.of));
+    throw FileError("{} holds shard {}/{}, not {}/{}: continue that one, or name another file with -o FILE",
+                    path.native(), last.shard, last.shards, shard.number, shard.of);
 }
 
 /// Whether to continue an existing file, rather than create it. Rank 0 decides.
@@ -108,10 +107,10 @@ std::string begin_text(const Sweep& sweep, std::int64_t to_do) {
   if (const auto& shard = sweep.options.shard) {
     const std::int64_t share = share_of(*shard, total);
     return fmt::format("shard {} of {} of {}, {} of {}{}, results in {}", shard->number, shard->of, name, share,
-                       counted(total, "task"), to_do == share ? "" : fmt::format(", {} left to do", to_do), path);
+                       count_text(total, "task"), to_do == share ? "" : fmt::format(", {} left to do", to_do), path);
   }
-  if (to_do == total) return fmt::format("{} for {}, results in {}", counted(total, "task"), name, path);
-  return fmt::format("{} of {} of {} are left to do in {}", to_do, counted(total, "task"), name, path);
+  if (to_do == total) return fmt::format("{} for {}, results in {}", count_text(total, "task"), name, path);
+  return fmt::format("{} of {} of {} are left to do in {}", to_do, count_text(total, "task"), name, path);
 }
 
 std::string too_large_text(const TooLarge& found, double memory) {
@@ -119,11 +118,11 @@ std::string too_large_text(const TooLarge& found, double memory) {
       "task {} needs {} of memory for its results, but a rank has {} left: {} left out; {}, or record less (\"record\" "
       "in the job)",
       found.task, bytes_text(found.bytes), bytes_text(static_cast<std::int64_t>(memory)),
-      found.tasks == 1 ? "it is" : counted(found.tasks, "such task") + " are", more_memory_text);
+      found.tasks == 1 ? "it is" : count_text(found.tasks, "such task") + " are", more_memory_text);
 }
 
 std::string extension_text(const Extension& extension, std::int64_t total) {
-  return fmt::format("{}: {} are copied from {}, {} are run", counted(total, "task"), extension.copied(),
+  return fmt::format("{}: {} are copied from {}, {} are run", count_text(total, "task"), extension.copied(),
                      extension.path().native(), total - extension.copied());
 }
 
@@ -191,6 +190,73 @@ bool open_sweep(Sweep& sweep) {
   if (sweep.extension) console.note(extension_text(*sweep.extension, plan.size()));
   if (sweep.extension && !sweep.extension->note().empty()) console.warn(sweep.extension->note());
   return true;
+}
+
+std::vector<PendingTask> all_tasks(const Plan& plan, const std::vector<std::uint8_t>& tries,
+                                   const std::optional<Extension>& extension) {
+  std::vector<PendingTask> tasks;
+  for (const Task& task : plan.tasks())
+    tasks.push_back({task.index, task.cost * (extension ? extension->cost(task.index) : 1),
+                     tries[static_cast<std::size_t>(task.index)]});
+  return tasks;
+}
+
+std::vector<PendingTask> leave_out(std::vector<PendingTask>& tasks, const TaskFilter& stays) {
+  const auto end = std::stable_partition(tasks.begin(), tasks.end(), stays);
+  std::vector<PendingTask> left_out(end, tasks.end());
+  tasks.erase(end, tasks.end());
+  return left_out;
+}
+
+TaskFilter not_done(const std::vector<std::uint8_t>& done) {
+  return [&done](const PendingTask& task) { return done[static_cast<std::size_t>(task.index)] == 0; };
+}
+
+TaskFilter not_crashed(int max_crashes) {
+  return [max_crashes](const PendingTask& task) { return task.crashes < max_crashes; };
+}
+
+TaskFilter in_shard(const Plan& plan, const std::optional<Shard>& shard) {
+  if (!shard) return [](const PendingTask&) { return true; };
+  std::vector<std::int64_t> order(static_cast<std::size_t>(plan.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int64_t a, std::int64_t b) { return plan.cost(a) > plan.cost(b); });
+  std::vector<bool> mine(order.size(), false);
+  for (auto i = static_cast<std::size_t>(shard->number) - 1; i < order.size(); i += static_cast<std::size_t>(shard->of))
+    mine[static_cast<std::size_t>(order[i])] = true;
+  return [mine = std::move(mine)](const PendingTask& task) { return mine[static_cast<std::size_t>(task.index)]; };
+}
+
+TaskFilter fits_memory(const Plan& plan, double memory) {
+  return [&plan, memory, of_a_row = row_bytes(axis_sizes(plan))](const PendingTask& task) {
+    return static_cast<double>(record_bytes(plan.task(task.index), of_a_row)) <= memory;
+  };
+}
+
+TooLarge largest_of(const std::vector<PendingTask>& tasks, const Plan& plan) {
+  const PerRows<std::int64_t> of_a_row = row_bytes(axis_sizes(plan));
+  TooLarge found;
+  for (const PendingTask& task : tasks) {
+    ++found.tasks;
+    const std::int64_t bytes = record_bytes(plan.task(task.index), of_a_row);
+    if (bytes > found.bytes) found.task = task.index, found.bytes = bytes;
+  }
+  return found;
+}
+
+std::string store_as_crashed(const Task& task, int crashes, const Plan& plan, ResultsFile& file) {
+  TaskRecord record;
+  record.prepare(task, axis_sizes(plan));
+  record.outcome = TaskOutcome::crashed;
+  record.message =
+      crashes == 1
+          ? "the worker or the sweep crashed or hung in the only try"
+          : fmt::format(
+                "the worker or the sweep crashed or hung in each of its {} tries; in the last try the task ran alone",
+                crashes);
+  file.write(task, record);
+  return record.message;
 }
 
 }  // namespace rodsweep

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -38,5 +40,32 @@ struct Sweep {
 /// Creates or continues the file, and lists the tasks that are left to do. Returns false if a signal stopped it while it
 /// verified the file: then the file is unchanged, and summary.dispatch has the signal.
 bool open_sweep(Sweep& sweep);
+
+// The tasks that a run has to do: all tasks of the plan, less those that a row of filters leaves out. The time limit is
+// the master's: it knows what a task takes.
+
+/// `tries`: of each task, in earlier runs whose worker crashed. A task that `extension` copies costs little.
+std::vector<PendingTask> all_tasks(const Plan& plan, const std::vector<std::uint8_t>& tries,
+                                   const std::optional<Extension>& extension);
+
+/// Whether a task stays in the list.
+using TaskFilter = std::function<bool(const PendingTask&)>;
+
+/// Removes the tasks that do not pass, and returns them.
+std::vector<PendingTask> leave_out(std::vector<PendingTask>& tasks, const TaskFilter& stays);
+
+/// `done`: a flag per task of the plan.
+TaskFilter not_done(const std::vector<std::uint8_t>& done);
+TaskFilter not_crashed(int max_crashes);
+/// Tasks are dealt out by descending cost, so that shards take similar times. All pass without a shard.
+TaskFilter in_shard(const Plan& plan, const std::optional<Shard>& shard);
+/// Whether the results of a task fit into `memory` bytes.
+TaskFilter fits_memory(const Plan& plan, double memory);
+
+/// The number of these tasks, and the one with the largest results.
+TooLarge largest_of(const std::vector<PendingTask>& tasks, const Plan& plan);
+
+/// Stores a task as crashed after its last allowed crash, and returns its message. Called on one rank.
+std::string store_as_crashed(const Task& task, int crashes, const Plan& plan, ResultsFile& file);
 
 }  // namespace rodsweep

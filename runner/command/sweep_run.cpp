@@ -8,8 +8,7 @@
 
 #include "runner/command/process_end.hpp"
 #include "runner/command/sweep_opening.hpp"
-#include "runner/command/sweep_tasks.hpp"
-#include "runner/dispatch/mpi_channel.hpp"
+#include "runner/dispatch/channel.hpp"
 #include "runner/measure/task_runner.hpp"
 
 namespace rodsweep {
@@ -85,7 +84,7 @@ void beat(Sweep& sweep, const Progress& progress, bool& warned) try {
 }
 
 /// Master and worker take turns in one process.
-Dispatch dispatch_alone(Sweep& sweep, Progress& progress, const std::function<void()>& now_and_then) {
+Dispatch dispatch_in_process(Sweep& sweep, Progress& progress, const std::function<void()>& now_and_then) {
   const auto received = [&] { return sweep.signal.received(); };
   MemoryNetwork network(2);
   Timeouts timeouts = timeouts_of(sweep.options, sweep.begin);
@@ -144,7 +143,7 @@ void dispatch_sweep(Sweep& sweep) {
   else if (mpi.size() > 1)
     dispatch = dispatch_to_workers(sweep, progress, callbacks, now_and_then);
   else
-    dispatch = dispatch_alone(sweep, progress, now_and_then);
+    dispatch = dispatch_in_process(sweep, progress, now_and_then);
   dispatch.left += sweep.summary.too_large.tasks;
   sweep.file->commit();
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "runner/command/next_command.hpp"
 #include "runner/terminal/formats.hpp"
 
 namespace rodsweep {
@@ -43,7 +42,7 @@ ExitCode exit_code(const SweepSummary& summary) {
 std::string summary_text(const SweepSummary& summary) {
   const Dispatch& dispatch = summary.dispatch;
   auto counts = finished(summary);
-  std::string text = counted(summary.tasks, "task");
+  std::string text = count_text(summary.tasks, "task");
   if (const auto& shard = summary.shard)
     text = fmt::format("shard {} of {}, {} of {}", shard->number, shard->of, share_of(*shard, summary.tasks), text);
   text += fmt::format(": {} ok", counts[ok_name]);
@@ -62,18 +61,18 @@ std::string summary_text(const SweepSummary& summary) {
 
   if (const auto& [timed, missed] = summary.solves; missed > 0)
     text += fmt::format("{} of {} missed the tolerance: their guesses have no times in these tasks\n", missed,
-                        counted(timed, "solve"));
+                        count_text(timed, "solve"));
   if (const auto now = finished_now(dispatch); now > 0 && dispatch.wall_s > 0)
     text +=
         fmt::format("{} for {}, {:.3g} tasks/s, {} busy {:.0f} % of the time\n", duration_text(dispatch.wall_s),
-                    counted(now, "task"), static_cast<double>(now) / dispatch.wall_s,
-                    counted(summary.workers, "worker"), 100 * dispatch.busy_s / (summary.workers * dispatch.wall_s));
+                    count_text(now, "task"), static_cast<double>(now) / dispatch.wall_s,
+                    count_text(summary.workers, "worker"), 100 * dispatch.busy_s / (summary.workers * dispatch.wall_s));
   std::int64_t again = 0;
   for (const TaskOutcome outcome : {TaskOutcome::error, TaskOutcome::timed_out, TaskOutcome::crashed})
     again += counts[to_string(outcome)];
   if (again > 0 && dispatch.left == 0)
     text += fmt::format("--resume --retry-failed repeats the {} that ended in an error, timed out or crashed\n",
-                        again == 1 ? "task" : counted(again, "task"));
+                        again == 1 ? "task" : count_text(again, "task"));
   text += "results: " + summary.path.native();
   if (dispatch.left > 0) return text;
   if (summary.shard)
@@ -95,8 +94,7 @@ std::string ended_text(const SweepSummary& summary, const RunOptions& options, i
     again.time_limit_s.reset();
     return fmt::format(
         "no task ended within the time limit of {}. To continue, raise --time-limit (under Slurm sbatch --time), or "
-        "stop "
-        "long tasks with --task-time-limit: {}",
+        "stop long tasks with --task-time-limit: {}",
         duration_text(*options.time_limit_s), run_line(again, ranks));
   }
   return fmt::format("{}; finished tasks are kept. To continue: {}",

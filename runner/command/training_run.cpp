@@ -8,14 +8,13 @@
 #include <algorithm>
 
 #include "network/training/threads.hpp"
-#include "runner/command/next_command.hpp"
 #include "runner/command/training_summary.hpp"
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/unfinished_file.hpp"
-#include "runner/job/job_difference.hpp"
+#include "runner/job/job.hpp"
 #include "runner/specs/training_job.hpp"
-#include "runner/terminal/progress_line.hpp"
+#include "runner/terminal/progress.hpp"
 #include "runner/training/training.hpp"
 #include "solver/step/stopwatch.hpp"
 
@@ -42,24 +41,20 @@ void check_same_job(const Job& job, const std::string& earlier_text, const fs::p
   const char* reason = found->key == "training.epochs"
                            ? " (the learning rate falls over all epochs, so another number begins anew)"
                            : "";
-  throw FileError(fmt::format("{} cannot be continued with {}: {} was {} and is {}{}; name another file with -o FILE",
-                              path.native(), job.path.native(), found->key, found->before, found->now, reason));
+  throw FileError("{} cannot be continued with {}: {} was {} and is {}{}; name another file with -o FILE",
+                  path.native(), job.path.native(), found->key, found->before, found->now, reason);
 }
 
 /// The training to resume; none if the file does not exist. Throws FileError if the file exists without --resume, or if
 /// it belongs to another job.
 std::optional<StoredModel> earlier_training(const RunOptions& options, const Job& job, const fs::path& path) {
+  if (!options.resume) refuse_existing(path, resume_advice);
   std::error_code error;
   if (!fs::exists(fs::symlink_status(path, error))) return std::nullopt;
-  if (!options.resume)
-    throw FileError(
-        fmt::format("{} exists already and is never overwritten: continue it with --resume, or name another file with "
-                    "-o FILE",
-                    path.native()));
   StoredModel earlier = read_training(path);
   check_same_job(job, earlier.card.job_text, path);
   if (earlier.card.ending == Ending::none && !earlier.checkpoint)
-    throw FileError(fmt::format("{} holds an unfinished training without a checkpoint", path.native()));
+    throw FileError("{} holds an unfinished training without a checkpoint", path.native());
   return earlier;
 }
 
@@ -113,8 +108,8 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   collectively(mpi_.world(), [&] {
     const LearningSets sets(training_job_, job_, mpi_.world());
     if (earlier && earlier->card.data_hash != sets.hash())
-      throw FileError(fmt::format("{} cannot be continued: {} is not the data set of its earlier runs", path_.native(),
-                                  paths_of(training_job_.data)));
+      throw FileError("{} cannot be continued: {} is not the data set of its earlier runs", path_.native(),
+                      paths_of(training_job_.data));
     data_ = training_data(training_job_, sets, threads_);
     simulations = ratio_simulations(training_job_, sets, mpi_.rank(), mpi_.size());
   });

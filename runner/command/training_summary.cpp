@@ -92,11 +92,23 @@ std::string training_summary(const ModelCard& card, const std::filesystem::path&
   constexpr double notable = 0.1;
   if (const double fall = late_fall(card); fall > notable)
     text += fmt::format(
-        "the validation loss fell by {:.0f} % in the second half of the epochs, so that more may lower it: "
-        "{} take about {} (training.epochs, with another -o FILE)\n",
-        100 * fall, counted(2 * static_cast<std::int64_t>(card.epochs.size()), "epoch"), duration_text(2 * seconds));
+        "the validation loss fell by {:.0f} % in the second half of the epochs, so that more may lower it: {} take "
+        "about {} (training.epochs, with another -o FILE)\n",
+        100 * fall, count_text(2 * static_cast<std::int64_t>(card.epochs.size()), "epoch"), duration_text(2 * seconds));
   return text + fmt::format("{} for {} epochs; model: {}, {}", duration_text(seconds), card.epochs.size(),
                             path.native(), bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(path))));
+}
+
+Json to_json(const RunRow& run) {
+  const Provenance& p = run.provenance;
+  return {{"begin", p.begin_utc},
+          {"end", run.end_utc.empty() ? Json() : Json(run.end_utc)},
+          {"exit_code", run.end_utc.empty() ? Json() : Json(run.exit_code)},
+          {"host", p.host},
+          {"ranks", p.ranks},
+          {"command", p.user_command},
+          {"revision", p.revision},
+          {"versions", p.versions}};
 }
 
 Json to_json(const StoredModel& stored, const std::filesystem::path& path) {
@@ -119,16 +131,12 @@ Json to_json(const StoredModel& stored, const std::filesystem::path& path) {
             {"base_cg_ratio", to_json(card.base_cg_ratio)}};
   for (const SceneRatios& of : card.scenes)
     json["scenes"][of.scene] = {{"cg_ratio", to_json(of.cg_ratio)}, {"base_cg_ratio", to_json(of.base_cg_ratio)}};
-  for (const RunRow& run : card.runs)
-    json["runs"].push_back({{"begin", run.provenance.begin_utc},
-                            {"end", run.end_utc.empty() ? Json() : Json(run.end_utc)},
-                            {"exit_code", run.end_utc.empty() ? Json() : Json(run.exit_code)},
-                            {"host", run.provenance.host},
-                            {"ranks", run.provenance.ranks},
-                            {"command", run.provenance.user_command},
-                            {"revision", run.provenance.revision},
-                            {"versions", run.provenance.versions}});
+  for (const RunRow& run : card.runs) json["runs"].push_back(to_json(run));
   return json;
+}
+
+std::string program_text(const Provenance& p) {
+  return fmt::format("  command   {}\n  revision  {}\n  versions  {}\n", p.user_command, p.revision, p.versions);
 }
 
 std::string provenance_text(const StoredModel& stored) {
@@ -141,9 +149,9 @@ std::string provenance_text(const StoredModel& stored) {
                       card.validation_simulations);
   for (std::size_t i = 0; i < card.runs.size(); ++i) {
     const Provenance& p = card.runs[i].provenance;
-    text += fmt::format("run {}: {} to {} on {}, {}\n  command   {}\n  revision  {}\n  versions  {}\n", i, p.begin_utc,
-                        card.runs[i].end_utc.empty() ? "?" : card.runs[i].end_utc, p.host, counted(p.ranks, "rank"),
-                        p.user_command, p.revision, p.versions);
+    text += fmt::format("run {}: {} to {} on {}, {}\n", i, p.begin_utc,
+                        card.runs[i].end_utc.empty() ? "?" : card.runs[i].end_utc, p.host, count_text(p.ranks, "rank"));
+    text += program_text(p);
   }
   text.pop_back();
   return text;

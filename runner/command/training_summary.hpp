@@ -20,4 +20,9 @@ std::string training_summary(const ModelCard& card, const std::filesystem::path&
 std::string provenance_text(const StoredModel& stored);
 nlohmann::ordered_json to_json(const StoredModel& stored, const std::filesystem::path& path);
 
+// What a run of a training and one of a sweep have in common.
+
+nlohmann::ordered_json to_json(const RunRow& run);
+std::string program_text(const Provenance& provenance);  ///< command, revision, versions: a line each
+
 }  // namespace rodsweep

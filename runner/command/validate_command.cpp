@@ -1,4 +1,4 @@
-#include "runner/command/validate_command.hpp"
+#include "runner/command/commands.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runner/file/file_error.hpp"
-#include "runner/measure/inputs.hpp"
+#include "runner/measure/plan_check.hpp"
 #include "runner/plan/plan.hpp"
 #include "runner/specs/training_job.hpp"
 #include "runner/terminal/formats.hpp"
@@ -18,7 +18,7 @@ namespace {
 std::string extent_text(const Job& job) {
   if (is_training(job)) return "trains a model";
   const Plan plan = missing_files(job).empty() ? checked_plan(job) : Plan(job);
-  return counted(plan.size(), "task");
+  return count_text(plan.size(), "task");
 }
 
 /// The JSON of a file, without the checks for a job; null if the file cannot be read or is not JSON.
@@ -91,8 +91,8 @@ class Validation {
         mistakes += (mistakes.empty() ? "" : "\n") + missing_file_text(job.path, file);
     }
     if (!mistakes.empty())
-      throw JobError(fmt::format("{}\n{}: to accept a file that another job makes, also give that job, or use --later",
-                                 mistakes, job.path.native()));
+      throw JobError("{}\n{}: to accept a file that another job makes, also give that job, or use --later", mistakes,
+                     job.path.native());
     return notes;
   }
 

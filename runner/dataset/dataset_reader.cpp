@@ -8,7 +8,6 @@
 #include "runner/file/columns.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
-#include "runner/file/resume_check.hpp"
 #include "runner/file/stored_plan.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/formats.hpp"
@@ -22,23 +21,20 @@ namespace fs = std::filesystem;
 void check_usable(const FileSummary& file) {
   const std::string path = file.path.native();
   if (file.job_kind != "dataset") {
-    throw FileError(
-        fmt::format("{} holds the results of a {}, not a data set: give the file of a job of kind \"dataset\"", path,
-                    file.job_kind));
+    throw FileError("{} holds the results of a {}, not a data set: give the file of a job of kind \"dataset\"", path,
+                    file.job_kind);
   }
   if (file.rerun_of_task) {
-    throw FileError(fmt::format(
-        "{} holds only one task of a data set, from `rodsweep rerun`: give the file of the data set", path));
+    throw FileError("{} holds only one task of a data set, from `rodsweep rerun`: give the file of the data set", path);
   }
   if (file.pending > 0) {
     throw FileError(
-        fmt::format("{} is not complete: {} of {} simulations are missing; finish it with: rodsweep run {} "
-                    "-o {} --resume",
-                    path, file.pending, file.tasks, shell_quoted(stored_job_path(file).native()), shell_quoted(path)));
+        "{} is not complete: {} of {} simulations are missing; finish it with: rodsweep run {} -o {} --resume", path,
+        file.pending, file.tasks, shell_quoted(stored_job_path(file).native()), shell_quoted(path));
   }
   if (file.failed == file.tasks) {
-    throw FileError(fmt::format("{} holds no usable simulation: all {} failed (rodsweep status {})", path, file.tasks,
-                                shell_quoted(path)));
+    throw FileError("{} holds no usable simulation: all {} failed (rodsweep status {})", path, file.tasks,
+                    shell_quoted(path));
   }
 }
 
@@ -95,8 +91,7 @@ StoredSimulation DatasetReader::read(std::int64_t simulation) const {
   record.prepare(plan_->task(index), axis_sizes(*plan_));
   by_rank_0(ranks_, [&] {
     if (reader_->read_intact(index, record)) return;
-    throw FileError(
-        fmt::format("{} is damaged: wrong checksum of task {}; make the data set again", path_.native(), index));
+    throw FileError("{} is damaged: wrong checksum of task {}; make the data set again", path_.native(), index);
   });
   if (ranks_)
     for (const Column& column : columns())

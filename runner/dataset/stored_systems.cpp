@@ -17,32 +17,32 @@ SystemRows::SystemRows(const Scene& scene, int iterations) : iterations_(iterati
   }
 }
 
-SystemRows::Place SystemRows::place(const SolvePosition& at) const {
+SystemRows::First SystemRows::first_of(const SolvePosition& at) const {
   const std::size_t before =
       static_cast<std::size_t>(at.step) * static_cast<std::size_t>(iterations_) + static_cast<std::size_t>(at.newton);
-  const Place& rod = rods_[static_cast<std::size_t>(at.rod)];
+  const First& rod = rods_[static_cast<std::size_t>(at.rod)];
   return {before * iteration_.system + rod.system, before * iteration_.segment + rod.segment,
           before * iteration_.joint + rod.joint};
 }
 
 void StoringSolve::write_state(const Rod& rod, const SolvePosition& at, bool balanced) {
-  const SystemRows::Place place = rows_.place(at);
-  record_.systems.step[place.system] = at.step;
-  record_.systems.newton[place.system] = static_cast<std::int16_t>(at.newton);
-  record_.systems.rod[place.system] = narrow<std::int16_t>(at.rod);
-  record_.systems.constraint_dt_s[place.system] = rod.constraint_dt;
-  store(rod.position, record_.systems.position_m.row(place.segment));
-  store(rod.orientation, record_.systems.orientation.row(place.segment));
-  store(rod.velocity, record_.systems.velocity_m_s.row(place.segment));
-  store(rod.angular_velocity, record_.systems.angular_velocity_rad_s.row(place.segment));
-  VectorX::Map(record_.systems.lambda.row(place.joint), rod.lambda.size()) = rod.lambda;
+  const SystemRows::First first = rows_.first_of(at);
+  record_.systems.step[first.system] = at.step;
+  record_.systems.newton[first.system] = static_cast<std::int16_t>(at.newton);
+  record_.systems.rod[first.system] = narrow<std::int16_t>(at.rod);
+  record_.systems.constraint_dt_s[first.system] = rod.constraint_dt;
+  store(rod.position, record_.systems.position_m.row(first.segment));
+  store(rod.orientation, record_.systems.orientation.row(first.segment));
+  store(rod.velocity, record_.systems.velocity_m_s.row(first.segment));
+  store(rod.angular_velocity, record_.systems.angular_velocity_rad_s.row(first.segment));
+  VectorX::Map(record_.systems.lambda.row(first.joint), rod.lambda.size()) = rod.lambda;
   if (!balanced) return;
-  store(rod.free_position, record_.systems.free_position_m.row(place.segment));
-  store(rod.free_orientation, record_.systems.free_orientation.row(place.segment));
+  store(rod.free_position, record_.systems.free_position_m.row(first.segment));
+  store(rod.free_orientation, record_.systems.free_orientation.row(first.segment));
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     const Vector6 impulse = rod.outer_impulse(s);
-    Vector3::Map(record_.systems.contact_force.row(place.segment + s)) = impulse.head<3>();
-    Vector3::Map(record_.systems.contact_torque.row(place.segment + s)) = impulse.tail<3>();
+    Vector3::Map(record_.systems.contact_force.row(first.segment + s)) = impulse.head<3>();
+    Vector3::Map(record_.systems.contact_torque.row(first.segment + s)) = impulse.tail<3>();
   }
 }
 
@@ -52,7 +52,7 @@ SolveOutcome StoringSolve::solve(const LinearSystem& system, const SolvePosition
   write_state(scene_.rods[static_cast<std::size_t>(at.rod)], at, system.keeps_balance());
   const SolveOutcome outcome = solve_.solve(system, at, assemble_s, delta_lambda);
   if (outcome == SolveOutcome::converged)
-    VectorX::Map(record_.systems.solution.row(rows_.place(at).joint), delta_lambda.size()) = delta_lambda;
+    VectorX::Map(record_.systems.solution.row(rows_.first_of(at).joint), delta_lambda.size()) = delta_lambda;
   return outcome;
 }
 
@@ -83,18 +83,18 @@ std::vector<StoredSystem> stored_systems(const TaskRecord& record, const Scene& 
     system.at = {record.systems.step[row], record.systems.newton[row], record.systems.rod[row]};
     system.constraint_dt_s = record.systems.constraint_dt_s[row];
     const Rod& rod = scene.rods[static_cast<std::size_t>(system.at.rod)];
-    const SystemRows::Place place = rows.place(system.at);
+    const SystemRows::First first = rows.first_of(system.at);
     system.position.resize(rod.segments.size());
     system.orientation.resize(rod.segments.size());
     system.velocity.resize(rod.segments.size());
     system.angular_velocity.resize(rod.segments.size());
-    load(record.systems.position_m.row(place.segment), system.position);
-    load(record.systems.orientation.row(place.segment), system.orientation);
-    load(record.systems.velocity_m_s.row(place.segment), system.velocity);
-    load(record.systems.angular_velocity_rad_s.row(place.segment), system.angular_velocity);
-    system.balance = stored_balance(record, rod, place.segment);
-    system.lambda = VectorX::Map(record.systems.lambda.row(place.joint), rod.lambda.size());
-    system.solution = VectorX::Map(record.systems.solution.row(place.joint), rod.lambda.size());
+    load(record.systems.position_m.row(first.segment), system.position);
+    load(record.systems.orientation.row(first.segment), system.orientation);
+    load(record.systems.velocity_m_s.row(first.segment), system.velocity);
+    load(record.systems.angular_velocity_rad_s.row(first.segment), system.angular_velocity);
+    system.balance = stored_balance(record, rod, first.segment);
+    system.lambda = VectorX::Map(record.systems.lambda.row(first.joint), rod.lambda.size());
+    system.solution = VectorX::Map(record.systems.solution.row(first.joint), rod.lambda.size());
     systems.push_back(std::move(system));
   }
   return systems;

@@ -14,7 +14,7 @@ namespace rodsweep {
 /// The rows of a system in a record.
 class SystemRows {
  public:
-  struct Place {
+  struct First {
     std::size_t system = 0, segment = 0, joint = 0;  ///< (first) rows
   };
 
@@ -22,12 +22,12 @@ class SystemRows {
   SystemRows(const Scene& scene, int iterations);
 
   bool holds(const SolvePosition& at) const { return at.newton < iterations_; }
-  Place place(const SolvePosition& at) const;
+  First first_of(const SolvePosition& at) const;
 
  private:
   int iterations_;
-  std::vector<Place> rods_;  ///< offset of each rod within an iteration
-  Place iteration_;          ///< rows of all rods
+  std::vector<First> rods_;  ///< offset of each rod within an iteration
+  First iteration_;          ///< rows of all rods
 };
 
 /// Records the input and the solution of another solve in a task's record. Allocates nothing after construction.

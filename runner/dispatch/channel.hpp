@@ -6,9 +6,14 @@
 // for the tests of dispatch and for a sweep on a single rank.
 #pragma once
 
+#include <mpi.h>
+
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <deque>
+#include <exception>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -16,6 +21,7 @@
 #include <vector>
 
 #include "runner/plan/task_outcome.hpp"
+#include "runner/text/formatted_error.hpp"
 
 namespace rodsweep {
 
@@ -69,9 +75,8 @@ struct Interrupted {
 };
 
 /// A message that violates the protocol: a bug.
-class ProtocolError : public std::logic_error {
- public:
-  using std::logic_error::logic_error;
+struct ProtocolError : FormattedError<std::logic_error> {
+  using FormattedError::FormattedError;
 };
 
 struct Envelope {
@@ -137,6 +142,52 @@ class MemoryNetwork {
   };
 
   std::vector<Endpoint> endpoints_;
+};
+
+/// Polling that leaves the core to other ranks: a short spin with sched_yield, then sleeps that grow from 50 us to 2 ms.
+/// Open MPI's blocking calls spin forever and take a core away from the workers.
+class Backoff {
+ public:
+  void wait();                  ///< no message: wait, longer each time
+  void reset() { polls_ = 0; }  ///< a message arrived
+
+ private:
+  int polls_ = 0;
+  std::chrono::microseconds pause_{};
+};
+
+/// The channel between ranks of an MPI communicator; uses a duplicate of it. Throws MpiError.
+///
+/// Sends with MPI_Isend, because MPI_Send to a rank on a dead host never returns.
+class MpiChannel : public Channel {
+ public:
+  explicit MpiChannel(MPI_Comm comm);  ///< collective
+  /// Collective, except during stack unwinding: the other ranks may never get here, and waiting for them would block
+  /// the error message.
+  ~MpiChannel() override;
+  /// Leaks the communicator and all pending messages. After a rank is lost, the collective MPI_Comm_free would hang.
+  void abandon();
+  MpiChannel(const MpiChannel&) = delete;
+  MpiChannel& operator=(const MpiChannel&) = delete;
+
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+  std::optional<Envelope> probe() override;
+  void send_bytes(int destination, Tag tag, const void* data, std::size_t bytes) override;
+  void receive_bytes(const Envelope& envelope, void* data) override;
+
+ private:
+  struct Outgoing {
+    std::unique_ptr<char[]> data;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+
+  void forget_sent();
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1;
+  std::vector<Outgoing> outgoing_;
+  int exceptions_ = std::uncaught_exceptions();  ///< at construction
 };
 
 }  // namespace rodsweep

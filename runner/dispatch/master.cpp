@@ -1,12 +1,8 @@
 #include "runner/dispatch/master.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <tuple>
 #include <utility>
-
-#include "runner/dispatch/backoff.hpp"
 
 namespace rodsweep {
 
@@ -118,7 +114,7 @@ void Master::report(int rank, const Report& report) {
   const auto had = std::find_if(sender.tasks.begin(), sender.tasks.end(),
                                 [&](const PendingTask& task) { return task.index == report.task; });
   if (had == sender.tasks.end())
-    throw ProtocolError(fmt::format("rank {} reports task {}, which is not assigned to it", rank, report.task));
+    throw ProtocolError("rank {} reports task {}, which is not assigned to it", rank, report.task);
   const PendingTask task = *had;
   sender.tasks.erase(had);
   --in_flight_;

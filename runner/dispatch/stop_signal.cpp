@@ -1,9 +1,12 @@
 #include "runner/dispatch/stop_signal.hpp"
 
+#include <fmt/format.h>
+
 #include <time.h>
 #include <unistd.h>
 
 #include <cstdlib>
+#include <cstring>
 
 #include "solver/plugin/user_call.hpp"
 
@@ -59,23 +62,11 @@ StopSignal::~StopSignal() {
 
 int StopSignal::received() const { return first_signal; }
 
-const char* signal_name(int signal) {
-  switch (signal) {
-    case SIGTERM: return "SIGTERM";
-    case SIGINT: return "SIGINT";
-    case SIGUSR1: return "SIGUSR1";
-    case SIGUSR2: return "SIGUSR2";
-    case SIGXCPU: return "SIGXCPU";
-    case SIGHUP: return "SIGHUP";
-    default: return "a signal";
-  }
-}
-
 std::string signal_cause(int signal) {
   if (signal == SIGINT) return "Ctrl-C (SIGINT)";
   if (signal == SIGTERM && from_parent != 0 && is_under_mpirun())
     return "mpirun (SIGTERM), after Ctrl-C, a signal or the loss of a rank";
-  return signal_name(signal);
+  return fmt::format("SIG{}", sigabbrev_np(signal));
 }
 
 }  // namespace rodsweep

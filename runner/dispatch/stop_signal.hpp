@@ -28,9 +28,6 @@ class StopSignal {
   std::array<struct sigaction, stop_signals.size()> before_{};
 };
 
-/// "SIGTERM", for messages.
-const char* signal_name(int signal);
-
 /// The likely cause of the received signal, for messages: "SIGUSR1", "Ctrl-C (SIGINT)". mpirun sends SIGTERM on Ctrl-C,
 /// on a SIGTERM of its own and on the death of a rank. These cannot be distinguished: "mpirun (SIGTERM), which got
 /// Ctrl-C or a signal, or lost a rank".

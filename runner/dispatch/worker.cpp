@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "runner/dispatch/backoff.hpp"
-
 namespace rodsweep {
 
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <functional>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -27,7 +27,7 @@ struct Column {
   const char* unit;        ///< "1" for dimensionless
   const char* meaning;     ///< one line
   std::int64_t (*type)();  ///< HDF5 type of a value in memory
-  Values (*values)(TaskRecord&);
+  std::function<Values(TaskRecord&)> values;
 };
 
 /// In the order of the file.

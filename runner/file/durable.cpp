@@ -1,9 +1,7 @@
 #include "runner/file/durable.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <system_error>
@@ -15,8 +13,8 @@ namespace {
 
 FileError sync_error(const std::filesystem::path& path, int code) {
   return FileError(
-      fmt::format("{} cannot be synced to disk: {}: fix the disk, then continue with --resume; finished tasks are kept",
-                  path.native(), std::system_category().message(code)));
+      "{} cannot be synced to disk: {}: fix the disk, then continue with --resume; finished tasks are kept",
+      path.native(), std::system_category().message(code));
 }
 
 /// Error codes of file systems without sync. They are ignored; writes there may not survive a power cut.

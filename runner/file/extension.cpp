@@ -10,7 +10,6 @@
 #include "runner/file/columns.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
-#include "runner/file/resume_check.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/stored_plan.hpp"
 #include "runner/plan/job_extension.hpp"
@@ -32,8 +31,8 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
     check_extends(plan.job(), before);
     before_.emplace(std::move(before));
     if (file.rerun_of_task)
-      throw FileError(fmt::format(
-          "{} holds only one task of a sweep, from `rodsweep rerun`: extend the file of the sweep", path.native()));
+      throw FileError("{} holds only one task of a sweep, from `rodsweep rerun`: extend the file of the sweep",
+                      path.native());
   }
   check_same_plan(path, *before_, "Extend it with that revision, or run the whole job without --extend");
   reader_.emplace(path);
@@ -62,9 +61,9 @@ void Extension::check_started(const fs::path& path) const {
   };
   if (here.empty() || here.front().source.empty() || here.size() < there.size() ||
       !std::equal(there.begin(), there.end(), here.begin(), same_begin)) {
-    throw FileError(fmt::format(
+    throw FileError(
         "{} was not started with --extend {}, or that file was resumed since; use --resume without --extend",
-        path.native(), path_.native()));
+        path.native(), path_.native());
   }
 }
 

@@ -10,7 +10,6 @@
 #include "runner/file/file_reading.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/layout.hpp"
-#include "runner/file/planned_columns.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/plan/task_outcome.hpp"
@@ -27,18 +26,11 @@ constexpr std::int64_t metadata_bytes_of_file = 6000;
 
 std::string system_text(int code) { return std::system_category().message(code); }
 
-FileError exists_error(const fs::path& path) {
-  return FileError(
-      fmt::format("{} exists already and is never overwritten: continue it with --resume, or name another "
-                  "file with -o FILE",
-                  path.native()));
-}
-
 FileError space_error(const fs::path& path, std::int64_t bytes, const std::string& found) {
   return FileError(
-      fmt::format("{} needs {}, but {}: free some space, name a file on another disk with -o FILE, or record "
-                  "less (record.solves: \"summary\", record.systems: \"first\", a larger record.trajectory_every)",
-                  path.native(), bytes_text(bytes), found));
+      "{} needs {}, but {}: free some space, name a file on another disk with -o FILE, or record less (record.solves: "
+      "\"summary\", record.systems: \"first\", a larger record.trajectory_every)",
+      path.native(), bytes_text(bytes), found);
 }
 
 std::int64_t file_bytes(const std::vector<Field>& fields) {
@@ -59,12 +51,7 @@ void create_datasets(hid_t file, const std::vector<Field>& fields) {
 void write_parameters(hid_t file, const std::vector<ParameterColumn>& parameters) {
   for (const ParameterColumn& parameter : parameters) {
     const std::string path = "/tasks/parameters/" + parameter.path;
-    if (const auto* texts = std::get_if<ColumnValues<std::string>>(&parameter.values))
-      hdf5::write_texts(file, path, texts->all());
-    else if (const auto* integers = std::get_if<ColumnValues<std::int64_t>>(&parameter.values))
-      hdf5::write_all(file, path, integers->all());
-    else
-      hdf5::write_all(file, path, std::get<ColumnValues<double>>(parameter.values).all());
+    std::visit([&](const auto& values) { hdf5::write_all(file, path, values.all()); }, parameter.values);
     hdf5::write_attribute(hdf5::open_dataset(file, path).id(), "swept", parameter.swept ? 1 : 0);
   }
 }
@@ -75,7 +62,7 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   hdf5::write_attribute(file, "schema_version", schema_version);
   hdf5::write_attribute(file, "kind", plan.job().values["kind"].get<std::string>());
   hdf5::write_attribute(file, "title", "rodsweep results: " + plan.job().name);
-  hdf5::write_texts(file, "/job/text", {plan.job().text});
+  hdf5::write_all(file, "/job/text", {plan.job().text});
   const hdf5::Object job(hdf5::check(H5Oopen(file, "/job", H5P_DEFAULT), "H5Oopen", "/job"));
   hdf5::write_attribute(job.id(), "name", plan.job().name);
   hdf5::write_attribute(job.id(), "plan_hash", plan_hash(plan, parameters));
@@ -83,14 +70,14 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   if (plan.task_alone())
     hdf5::write_attribute(job.id(), "rerun_of_task", static_cast<std::int32_t>(*plan.task_alone()));
 
-  if (!plan.guess_labels().empty()) hdf5::write_texts(file, "/axes/guess", plan.guess_labels());
+  if (!plan.guess_labels().empty()) hdf5::write_all(file, "/axes/guess", plan.guess_labels());
   hdf5::write_all(file, "/axes/tolerance", tolerance_ladder());
   write_parameters(file, parameters);
   visit_planned_values(plan,
                        [&](const char* path, const char*, const auto& values) { hdf5::write_all(file, path, values); });
   const auto tasks = static_cast<std::size_t>(plan.size());
   hdf5::write_all(file, "/tasks/state", std::vector<std::uint8_t>(tasks, 0));
-  hdf5::write_texts(file, "/tasks/outcome", std::vector<std::string>(tasks, to_string(TaskOutcome::pending)));
+  hdf5::write_all(file, "/tasks/outcome", std::vector<std::string>(tasks, to_string(TaskOutcome::pending)));
 }
 
 /// Copies the runs of earlier files; each row gets its source file unless it has one already.
@@ -124,8 +111,7 @@ std::int64_t file_bytes(const Plan& plan) { return file_bytes(layout(plan, plan.
 
 int create_results_file(const fs::path& path, const Plan& plan, const FreeSpace& free_space,
                         const std::vector<fs::path>& earlier) {
-  std::error_code error;
-  if (fs::exists(fs::symlink_status(path, error))) throw exists_error(path);
+  refuse_existing(path, resume_advice);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   make_folder_of(path);
 

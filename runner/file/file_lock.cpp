@@ -1,15 +1,15 @@
 #include "runner/file/file_lock.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 
 #include <cerrno>
+#include <system_error>
 
 #include "runner/file/file_error.hpp"
 
 namespace rodsweep {
-
 namespace {
 
 struct flock far_byte() {
@@ -35,11 +35,25 @@ FileLock::FileLock(const std::filesystem::path& path) : descriptor_(open(path.c_
   struct flock byte = far_byte();
   held_ = fcntl(descriptor_.number(), F_OFD_SETLK, &byte) == 0;
   if (!held_ && (errno == EAGAIN || errno == EACCES))
-    throw FileError(fmt::format(
+    throw FileError(
         "{} is being written by another run: wait until it ends, or stop it (`rodsweep info {}` shows its host)",
-        path.native(), path.native()));
+        path.native(), path.native());
   if (flock(descriptor_.number(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    throw FileError(fmt::format("{} is open for writing in another program: close it there", path.native()));
+    throw FileError("{} is open for writing in another program: close it there", path.native());
+}
+
+FileHeartbeat::FileHeartbeat(const std::filesystem::path& path)
+    : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+  if (!descriptor_) throw FileError(path.native() + ": " + std::system_category().message(errno));
+}
+
+bool FileHeartbeat::beat() {
+  constexpr std::chrono::seconds pause{1};
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_) return false;
+  next_ = now + pause;
+  futimens(descriptor_.number(), nullptr);
+  return true;
 }
 
 }  // namespace rodsweep

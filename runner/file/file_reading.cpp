@@ -25,8 +25,7 @@ bool has_hdf5_signature(const fs::path& path) {
 }  // namespace
 
 FileError damaged_error(const fs::path& path, const std::string& reason) {
-  return FileError(
-      fmt::format("{} is damaged or incomplete: {}. Use a copy, or create it again", path.native(), reason));
+  return FileError("{} is damaged or incomplete: {}. Use a copy, or create it again", path.native(), reason);
 }
 
 std::string damage_text(const std::exception& failure) {
@@ -41,21 +40,18 @@ hdf5::File open_own(const fs::path& path, const char* what) {
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
     const std::string left = unfinished_text(path);
-    throw FileError(fmt::format("{}: file not found{}{}", path.native(), left.empty() ? "" : "; ", left));
+    throw FileError("{}: file not found{}{}", path.native(), left.empty() ? "" : "; ", left);
   }
-  if (!fs::is_regular_file(status)) throw FileError(fmt::format("{} is not a file", path.native()));
-  if (!std::ifstream(path)) throw FileError(fmt::format("{} cannot be read: no permission", path.native()));
-  if (!has_hdf5_signature(path)) throw FileError(fmt::format("{} is not an HDF5 file", path.native()));
-  try {
+  if (!fs::is_regular_file(status)) throw FileError("{} is not a file", path.native());
+  if (!std::ifstream(path)) throw FileError("{} cannot be read: no permission", path.native());
+  if (!has_hdf5_signature(path)) throw FileError("{} is not an HDF5 file", path.native());
+  return reading(path, [&] {
     hdf5::File file = hdf5::open_file(path, H5F_ACC_RDONLY);
     if (!hdf5::has_attribute(file.id(), "/", "program") ||
-        hdf5::read_text_attribute(file.id(), "/", "program") != "rodsweep") {
-      throw FileError(fmt::format("{} is an HDF5 file, but does not hold rodsweep {}", path.native(), what));
-    }
+        hdf5::read_text_attribute(file.id(), "/", "program") != "rodsweep")
+      throw FileError("{} is an HDF5 file, but does not hold rodsweep {}", path.native(), what);
     return file;
-  } catch (const Hdf5Error& failure) {
-    throw damaged_error(path, damage_text(failure));
-  }
+  });
 }
 
 std::string kind_of(const hdf5::File& file) {
@@ -67,25 +63,20 @@ void check_version(const hdf5::File& file, const fs::path& path, int known) {
   const int version = hdf5::read_int_attribute(file.id(), "/", "schema_version");
   if (version == known) return;
   throw FileError(
-      fmt::format("{} has schema version {}, but this rodsweep reads only version {}: use the revision that wrote it "
-                  "(/runs/revision in the file)",
-                  path.native(), version, known));
+      "{} has schema version {}, but this rodsweep reads only version {}: use the revision that wrote it "
+      "(/runs/revision in the file)",
+      path.native(), version, known);
 }
 
 hdf5::File open_results(const fs::path& path) {
   hdf5::File file = open_own(path, "results");
-  try {
-    if (kind_of(file) == "model") {
-      throw FileError(
-          fmt::format("{} holds a trained model, not results of simulations; `rodsweep info` shows it", path.native()));
-    }
+  reading(path, [&] {
+    if (kind_of(file) == "model")
+      throw FileError("{} holds a trained model, not results of simulations; `rodsweep info` shows it", path.native());
     if (kind_of(file) == "systems")
-      throw FileError(fmt::format("{} holds linear systems, not results: read it with rodsweep.systems() in Python",
-                                  path.native()));
+      throw FileError("{} holds linear systems, not results: read it with rodsweep.systems() in Python", path.native());
     check_version(file, path, schema_version);
-  } catch (const Hdf5Error& failure) {
-    throw damaged_error(path, failure.what());
-  }
+  });
   return file;
 }
 
@@ -96,7 +87,7 @@ std::string job_checksum(const std::string& text) {
 }
 
 std::string stored_job_text(const hdf5::File& file, const fs::path& path) {
-  std::string text = hdf5::read_texts(file.id(), "/job/text").at(0);
+  std::string text = hdf5::read_all<std::string>(file.id(), "/job/text").at(0);
   if (hdf5::has_attribute(file.id(), "/job", "text_checksum") &&
       hdf5::read_text_attribute(file.id(), "/job", "text_checksum") != job_checksum(text))
     throw damaged_error(path, "its job does not match its checksum (/job/text)");
@@ -108,9 +99,9 @@ std::vector<std::uint8_t> read_states(const hdf5::File& file, const fs::path& pa
   const auto odd = std::find_if(states.begin(), states.end(), [](std::uint8_t state) { return state > 1; });
   if (odd != states.end()) {
     throw FileError(
-        fmt::format("{} is damaged: /tasks/state of task {} is {}; must be 0 or 1. Run its job with --resume to verify "
-                    "all tasks and repeat damaged ones",
-                    path.native(), odd - states.begin(), *odd));
+        "{} is damaged: /tasks/state of task {} is {}; must be 0 or 1. Run its job with --resume to verify all tasks "
+        "and repeat damaged ones",
+        path.native(), odd - states.begin(), *odd);
   }
   return states;
 }

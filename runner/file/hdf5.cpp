@@ -4,8 +4,6 @@
 #include <new>
 #include <numeric>
 
-#include "runner/file/file_error.hpp"
-
 namespace rodsweep {
 namespace {
 
@@ -222,7 +220,20 @@ void RowDataset::read(hid_t type, hsize_t first, hsize_t count, void* values) co
   check(H5Dread(dataset_.id(), type, memory.id(), space_.id(), H5P_DEFAULT, values), "H5Dread", path_);
 }
 
-std::vector<std::string> read_texts(hid_t file, const std::string& path) {
+std::string RowDataset::text(hsize_t row) const {
+  const Datatype stored = type();
+  std::string buffer(text_bytes(stored.id(), path_) * row_values_, '\0');
+  read(stored.id(), row, 1, buffer.data());
+  return without_padding(buffer.data(), buffer.size());
+}
+
+void RowDataset::put_text(hsize_t row, std::string_view text) const {
+  const Datatype stored = type();
+  write(stored.id(), row, 1, fixed_text(text, text_bytes(stored.id(), path_)).data());
+}
+
+template <>
+std::vector<std::string> read_all(hid_t file, const std::string& path) {
   const Dataset dataset = open_dataset(file, path);
   const Datatype type(check(H5Dget_type(dataset.id()), "H5Dget_type", path));
   const std::size_t bytes = text_bytes(type.id(), path);
@@ -249,7 +260,7 @@ void visit_texts(hid_t file, const std::string& path, std::size_t rows,
   }
 }
 
-void write_texts(hid_t file, const std::string& path, const std::vector<std::string>& values) {
+void write_all(hid_t file, const std::string& path, const std::vector<std::string>& values) {
   const Dataset dataset = open_dataset(file, path);
   const Datatype type(check(H5Dget_type(dataset.id()), "H5Dget_type", path));
   std::string buffer;
@@ -261,24 +272,7 @@ void store_texts(hid_t file, const std::string& path, const std::vector<std::str
   std::size_t bytes = 1;
   for (const std::string& text : texts) bytes = std::max(bytes, text.size());
   create_dataset(file, path, text_type(bytes).id(), {texts.size()});
-  write_texts(file, path, texts);
-}
-
-std::string read_text_row(hid_t file, const std::string& path, hsize_t row) {
-  return read_text_row(RowDataset(file, path), row);
-}
-
-std::string read_text_row(const RowDataset& rows, hsize_t row) {
-  const Datatype type = rows.type();
-  std::string buffer(text_bytes(type.id(), rows.path()) * rows.row_values(), '\0');
-  rows.read(type.id(), row, 1, buffer.data());
-  return without_padding(buffer.data(), buffer.size());
-}
-
-void write_text_row(hid_t file, const std::string& path, hsize_t row, std::string_view value) {
-  const RowDataset rows(file, path);
-  const Datatype type = rows.type();
-  rows.write(type.id(), row, 1, fixed_text(value, text_bytes(type.id(), path)).data());
+  write_all(file, path, texts);
 }
 
 void write_attribute(hid_t object, const char* name, std::string_view value) {

@@ -126,9 +126,15 @@ class RowDataset {
   hsize_t rows() const { return extent_.at(0); }
   hsize_t row_values() const { return row_values_; }
   Datatype type() const;  ///< type in the file
-
   void write(hid_t type, hsize_t first, hsize_t count, const void* values) const;
   void read(hid_t type, hsize_t first, hsize_t count, void* values) const;
+  /// The single number or text of a row.
+  template <class T>
+  T number(hsize_t row) const;
+  template <class T>
+  void put(hsize_t row, T number) const;
+  std::string text(hsize_t row) const;
+  void put_text(hsize_t row, std::string_view text) const;
 
  private:
   Dataspace select(hsize_t first, hsize_t count) const;
@@ -139,6 +145,19 @@ class RowDataset {
   std::vector<hsize_t> extent_;
   hsize_t row_values_ = 0;
 };
+
+template <class T>
+T RowDataset::number(hsize_t row) const {
+  if (row_values_ != 1) throw Damage(path_ + " has rows of several values");
+  T value{};
+  read(type_of<T>(), row, 1, &value);
+  return value;
+}
+
+template <class T>
+void RowDataset::put(hsize_t row, T number) const {
+  write(type_of<T>(), row, 1, &number);
+}
 
 template <class T>
 std::vector<T> read_all(hid_t file, const std::string& path) {
@@ -153,6 +172,11 @@ void write_all(hid_t file, const std::string& path, const std::vector<T>& values
   const Dataset dataset = open_dataset(file, path);
   check(H5Dwrite(dataset.id(), type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite", path);
 }
+
+/// Texts of a fixed length, read without their padding.
+template <>
+std::vector<std::string> read_all(hid_t file, const std::string& path);
+void write_all(hid_t file, const std::string& path, const std::vector<std::string>& values);
 
 void write_attribute(hid_t object, const char* name, std::string_view value);
 void write_attribute(hid_t object, const char* name, std::int32_t value);
@@ -170,30 +194,9 @@ void store(hid_t file, const std::string& path, const std::vector<hsize_t>& exte
 /// Creates a dataset of texts, as wide as the longest of them.
 void store_texts(hid_t file, const std::string& path, const std::vector<std::string>& texts);
 
-/// Fixed-length text, without its padding.
-std::vector<std::string> read_texts(hid_t file, const std::string& path);
-void write_texts(hid_t file, const std::string& path, const std::vector<std::string>& values);
 /// Calls visit(row, text) for each row, without all texts in memory. Throws Damage unless there are `rows` rows.
 void visit_texts(hid_t file, const std::string& path, std::size_t rows,
                  const std::function<void(std::size_t, const std::string&)>& visit);
-std::string read_text_row(hid_t file, const std::string& path, hsize_t row);
-std::string read_text_row(const RowDataset& rows, hsize_t row);
-void write_text_row(hid_t file, const std::string& path, hsize_t row, std::string_view value);
-
-template <class T>
-void write_row(hid_t file, const std::string& path, hsize_t row, T value) {
-  RowDataset(file, path).write(type_of<T>(), row, 1, &value);
-}
-
-/// The single number of a row.
-template <class T>
-T read_row(const RowDataset& rows, hsize_t row) {
-  if (rows.row_values() != 1) throw Damage(rows.path() + " has rows of several values");
-  T value{};
-  rows.read(type_of<T>(), row, 1, &value);
-  return value;
-}
-
 bool has_attribute(hid_t file, const std::string& object, const char* name);
 std::string read_text_attribute(hid_t file, const std::string& object, const char* name);
 std::int32_t read_int_attribute(hid_t file, const std::string& object, const char* name);

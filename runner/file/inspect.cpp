@@ -34,7 +34,7 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
     }
     if (outcome == ok_name) return;
     ++summary.failed;
-    summary.failures.push_back({static_cast<std::int64_t>(task), outcome, hdf5::read_text_row(messages, task)});
+    summary.failures.push_back({static_cast<std::int64_t>(task), outcome, messages.text(task)});
   });
   summary.pending = summary.tasks - summary.done;
 }
@@ -51,8 +51,7 @@ void find_begun(const hdf5::File& file, const std::vector<std::uint8_t>& states,
   const auto ranks = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/rank");
   const hdf5::RowDataset hosts(file.id(), "/timing/tasks/host");
   for (const std::size_t task : begun)
-    summary.begun.push_back(
-        {static_cast<std::int64_t>(task), run_of_task.at(task), ranks.at(task), hdf5::read_text_row(hosts, task)});
+    summary.begun.push_back({static_cast<std::int64_t>(task), run_of_task.at(task), ranks.at(task), hosts.text(task)});
 }
 
 void find_momentum_residual(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
@@ -86,7 +85,7 @@ FileSummary inspect(const fs::path& path) {
     if (hdf5::has_attribute(file.id(), "/job", "rerun_of_task"))
       summary.rerun_of_task = hdf5::read_int_attribute(file.id(), "/job", "rerun_of_task");
     summary.job_text = stored_job_text(file, path);
-    if (hdf5::exists(file.id(), "/axes/guess")) summary.guesses = hdf5::read_texts(file.id(), "/axes/guess");
+    if (hdf5::exists(file.id(), "/axes/guess")) summary.guesses = hdf5::read_all<std::string>(file.id(), "/axes/guess");
     summary.tolerances = hdf5::read_all<double>(file.id(), "/axes/tolerance");
     summary.being_written = FileLock::is_held(path);  // before /runs, where a run that ends meanwhile stores its end
     // States before data: all data of a task with state 1 are in the file.

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "runner/file/columns.hpp"
-#include "runner/file/planned_columns.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/text/checksum.hpp"
 
@@ -25,13 +24,14 @@ void append_parameters(std::vector<Field>& fields, const Plan& plan, const std::
     const std::string unit = parameter.unit.empty() ? "1" : parameter.unit;
     std::vector<std::int64_t> extent{plan.size()};
     if (parameter.width > 1) extent.push_back(parameter.width);
-    if (const auto* texts = std::get_if<ColumnValues<std::string>>(&parameter.values)) {
-      fields.push_back(text_field(path, longest(texts->distinct()), extent, parameter.meaning));
-    } else if (std::holds_alternative<ColumnValues<std::int64_t>>(parameter.values)) {
-      fields.push_back(number_field<std::int64_t>(path, extent, unit, parameter.meaning));
-    } else {
-      fields.push_back(number_field<double>(path, extent, unit, parameter.meaning));
-    }
+    const auto append = [&](const auto& values) {
+      using Value = typename std::decay_t<decltype(values)>::value_type;
+      if constexpr (std::is_same_v<Value, std::string>)
+        fields.push_back(text_field(path, longest(values.distinct()), extent, parameter.meaning));
+      else
+        fields.push_back(number_field<Value>(path, extent, unit, parameter.meaning));
+    };
+    std::visit(append, parameter.values);
   }
 }
 
@@ -44,10 +44,10 @@ void check_sizes(const std::vector<Field>& fields, const Plan& plan) {
     all += std::accumulate(field.extent.begin(), field.extent.end(), static_cast<double>(element), std::multiplies<>());
     if (all <= most_bytes) continue;
     throw FileError(
-        fmt::format("{}: the results file would be too large: {} has {} values of {} bytes, and the file exceeds {} "
-                    "bytes; record less (record.solves: \"summary\", record.systems: \"first\", a larger "
-                    "record.trajectory_every), or split the job",
-                    plan.job().path.native(), field.path, fmt::join(field.extent, " x "), element, most_bytes));
+        "{}: the results file would be too large: {} has {} values of {} bytes, and the file exceeds {} bytes; record "
+        "less (record.solves: \"summary\", record.systems: \"first\", a larger record.trajectory_every), or split the "
+        "job",
+        plan.job().path.native(), field.path, fmt::join(field.extent, " x "), element, most_bytes);
   }
 }
 

@@ -1,6 +1,5 @@
 #include "runner/file/record.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <type_traits>
 

@@ -11,11 +11,9 @@
 #include <utility>
 
 #include "runner/file/columns.hpp"
-#include "runner/file/common_place.hpp"
-#include "runner/file/durable.hpp"
-#include "runner/file/heartbeat.hpp"
+#include "runner/file/file_lock.hpp"
 #include "runner/file/layout.hpp"
-#include "runner/file/record.hpp"
+#include "runner/file/opening.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/plan/task_outcome.hpp"
@@ -67,10 +65,10 @@ struct ResultsFile::Open {
     if (written.empty()) return;
     const auto begin = Clock::now();
     // The kernel reports a failed write only once; a second sync would succeed.
-    if (std::exchange(sync_failed, true)) throw FileError(fmt::format("{}: an earlier sync failed", path.native()));
+    if (std::exchange(sync_failed, true)) throw FileError("{}: an earlier sync failed", path.native());
     synced.sync();
     sync_failed = false;
-    for (const std::int64_t task : written) set_state(task, 1);
+    for (const std::int64_t task : written) rows.state.put<std::uint8_t>(task, 1);
     committed += static_cast<std::int64_t>(written.size());
     written.clear();
     const std::chrono::duration<double> took = Clock::now() - begin;
@@ -78,16 +76,10 @@ struct ResultsFile::Open {
     next_commit = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pause));
   }
 
-  void set_state(std::int64_t task, std::uint8_t value) { set_byte(state, task, value); }
-  void set_tries(std::int64_t task, std::uint8_t value) { set_byte(tries, task, value); }
-  static void set_byte(const hdf5::RowDataset& rows, std::int64_t task, std::uint8_t value) {
-    rows.write(hdf5::type_of<std::uint8_t>(), static_cast<hsize_t>(task), 1, &value);
-  }
-
-  void say_who(std::int64_t task, const TaskOrigin& by) {
-    rank.write(hdf5::type_of<std::int32_t>(), static_cast<hsize_t>(task), 1, &by.rank);
-    host.write(host_type.id(), static_cast<hsize_t>(task), 1, hdf5::fixed_text(by.host, host_bytes).data());
-    run_row.write(hdf5::type_of<std::int32_t>(), static_cast<hsize_t>(task), 1, &by.run);
+  void put_origin(std::int64_t task, const TaskOrigin& by) {
+    rows.rank.put(task, by.rank);
+    rows.host.put_text(task, by.host);
+    rows.run.put(task, by.run);
   }
 
   hdf5::File file;
@@ -103,9 +95,8 @@ struct ResultsFile::Open {
   AxisSizes sizes;
   RunRow run;                             // of this run
   std::vector<hdf5::RowDataset> columns;  // in the order of columns(); empty: not in the file
-  hdf5::RowDataset state, outcome, message, checksum, tries, rank, host, run_row, write_s, left_s;
-  hdf5::Datatype outcome_type = hdf5::text_type(outcome_bytes), message_type = hdf5::text_type(message_bytes);
-  hdf5::Datatype host_type = hdf5::text_type(host_bytes);
+  TaskRows rows;
+  hdf5::RowDataset left_s;
   std::string own_host = host_name();
 };
 
@@ -162,19 +153,10 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     open_->synced = SyncedFile(path);
     open_->heartbeat = FileHeartbeat(path);
     open_->sizes = axis_sizes(plan);
-    check_mpi(MPI_Comm_rank(comm, &open_->own_rank), "MPI_Comm_rank");
-    const auto open_rows = [&](const char* dataset) { return hdf5::RowDataset(open_->file.id(), dataset); };
-    open_->state = open_rows("/tasks/state");
-    open_->outcome = open_rows("/tasks/outcome");
-    open_->message = open_rows("/tasks/message");
-    open_->checksum = open_rows("/tasks/checksum");
-    open_->tries = open_rows("/timing/tasks/tries");
-    open_->rank = open_rows("/timing/tasks/rank");
-    open_->host = open_rows("/timing/tasks/host");
-    open_->run_row = open_rows("/timing/tasks/run");
-    open_->write_s = open_rows("/timing/tasks/write_s");
-    open_->left_s = open_rows("/runs/left_s");
-    for (const Column& column : columns()) open_->columns.push_back(open_rows(column.path));
+    open_->own_rank = rank_in(comm);
+    open_->rows = TaskRows(open_->file.id());
+    open_->left_s = hdf5::RowDataset(open_->file.id(), "/runs/left_s");
+    for (const Column& column : columns()) open_->columns.emplace_back(open_->file.id(), column.path);
   });
   if (open_->own_rank == 0 && !open_->lock.held())
     add_note(path.native() +
@@ -193,8 +175,8 @@ void ResultsFile::take_back(const std::vector<std::int64_t>& again, MPI_Comm com
   if (again.empty()) return;
   on_first_rank(comm, [&] {
     for (const std::int64_t task : again) {
-      open_->set_state(task, 0);
-      open_->set_tries(task, 0);
+      open_->rows.state.put<std::uint8_t>(task, 0);
+      open_->rows.tries.put<std::uint8_t>(task, 0);
     }
     open_->synced.sync();
   });
@@ -211,16 +193,16 @@ void ResultsFile::commit_if_due() {
 }
 
 void ResultsFile::begin(const Task& task) {
-  std::uint8_t before = 0;  // another rank may have been lost with this task since the file was opened
-  open_->tries.read(hdf5::type_of<std::uint8_t>(), static_cast<hsize_t>(task.index), 1, &before);
-  before = std::max(before, tries_.at(static_cast<std::size_t>(task.index)));
+  // Another rank may have been lost with this task since the file was opened.
+  const std::uint8_t before =
+      std::max(open_->rows.tries.number<std::uint8_t>(task.index), tries_.at(static_cast<std::size_t>(task.index)));
   before_[task.index] = before;
-  open_->say_who(task.index, {open_->own_rank, run_index_, open_->own_host, 0});
-  open_->set_tries(task.index, before < UINT8_MAX ? before + 1 : before);
+  open_->put_origin(task.index, {open_->own_rank, run_index_, open_->own_host, 0});
+  open_->rows.tries.put<std::uint8_t>(task.index, before < UINT8_MAX ? before + 1 : before);
 }
 
 void ResultsFile::abandon(const Task& task) {
-  open_->set_tries(task.index, before_.at(task.index));
+  open_->rows.tries.put(task.index, before_.at(task.index));
   before_.erase(task.index);
 }
 
@@ -245,22 +227,16 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
     }
     if (expected > 0) write_in_blocks(open.columns[c], column.type(), rows, bytes, bytes_left);
   }
-  const auto write_one = [&](const hdf5::RowDataset& dataset, auto value) {
-    dataset.write(hdf5::type_of<decltype(value)>(), task.index, 1, &value);
-  };
-  const auto write_text = [&](const hdf5::RowDataset& dataset, const hdf5::Datatype& type, std::string_view text) {
-    dataset.write(type.id(), task.index, 1, hdf5::fixed_text(text, H5Tget_size(type.id())).data());
-  };
-  write_text(open.outcome, open.outcome_type, to_string(record.outcome));
-  write_text(open.message, open.message_type, record.message);
-  write_one(open.checksum, task_checksum(task.index, record));
-  open.set_tries(task.index, 0);
+  open.rows.outcome.put_text(task.index, to_string(record.outcome));
+  open.rows.message.put_text(task.index, record.message);
+  open.rows.checksum.put(task.index, task_checksum(task.index, record));
+  open.rows.tries.put<std::uint8_t>(task.index, 0);
   before_.erase(task.index);
   const TaskOrigin here{open.own_rank, run_index_, open.own_host,
                         std::chrono::duration<double>(Clock::now() - begin).count()};
   const TaskOrigin& by = origin != nullptr ? *origin : here;
-  open.say_who(task.index, by);
-  write_one(open.write_s, by.write_s);
+  open.put_origin(task.index, by);
+  open.rows.write_s.put(task.index, by.write_s);
   open.written.push_back(task.index);
   commit_if_due();
 }
@@ -268,8 +244,7 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
 void ResultsFile::beat(std::optional<double> left_s) {
   if (!open_->heartbeat.beat()) return;
   open_->run.left_s = left_s.value_or(NAN);
-  if (has_row_ && open_->left_s)
-    open_->left_s.write(hdf5::type_of<double>(), static_cast<hsize_t>(run_index_), 1, &open_->run.left_s);
+  if (has_row_ && open_->left_s) open_->left_s.put(static_cast<hsize_t>(run_index_), open_->run.left_s);
 }
 
 void ResultsFile::end_run(const std::string& end_utc, int exit_code) {
@@ -301,17 +276,17 @@ void ResultsFile::leave() {
 void ResultsFile::check_written() const {
   if (!synced_.is_in_place())
     throw FileError(
-        fmt::format("{} is not the file that this run wrote: meanwhile it was removed, moved or replaced. If it was "
-                    "moved, it is whole where it is now; if it was removed, its results are lost",
-                    path_.native()));
+        "{} is not the file that this run wrote: meanwhile it was removed, moved or replaced. If it was moved, it is "
+        "whole where it is now; if it was removed, its results are lost",
+        path_.native());
   try {
     const hdf5::File file = hdf5::open_file(path_, H5F_ACC_RDONLY, hdf5::unlocked_access().id());
     const hdf5::RowDataset state(file.id(), "/tasks/state");
   } catch (const Hdf5Error& error) {
-    throw FileError(fmt::format(
+    throw FileError(
         "{} does not open after the run, because another program wrote to it meanwhile: run the job again with another "
         "-o FILE ({})",
-        path_.native(), error.what()));
+        path_.native(), error.what());
   }
 }
 

@@ -24,9 +24,9 @@
 #include "runner/file/durable.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/file/file_error.hpp"
+#include "runner/file/opening.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
-#include "runner/file/resuming.hpp"
 #include "runner/plan/plan.hpp"
 
 namespace rodsweep {

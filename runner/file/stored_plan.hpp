@@ -1,7 +1,9 @@
 // The plan of a results file, rebuilt from the job stored in it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "runner/file/inspect.hpp"
 #include "runner/plan/plan.hpp"
@@ -20,5 +22,21 @@ Job stored_job(const FileSummary& file, const std::filesystem::path& other = {},
 /// The plan of a file's job. Throws FileError likewise.
 Plan planned(const FileSummary& file, Job job);
 Plan stored_plan(const FileSummary& file);
+
+/// Checks whether a sweep can be resumed in a file. One process, read-only. Throws FileError with the difference and
+/// advice.
+struct ResumePoint {
+  std::vector<std::uint8_t> done;   ///< raw state bytes, by task index
+  std::vector<std::uint8_t> tries;  ///< /timing/tasks/tries, by task index
+  int runs = 0;                     ///< number of used rows of /runs
+};
+
+/// Throws unless the plan has the same tasks as the file.
+void check_same_tasks(const std::filesystem::path& path, const Plan& plan);
+
+/// Throws, with `advice`, unless the file was made from this plan by a program that expands its job in the same way.
+void check_same_plan(const std::filesystem::path& path, const Plan& plan, const char* advice);
+
+ResumePoint check_resumable(const std::filesystem::path& path, const Plan& plan);
 
 }  // namespace rodsweep

@@ -1,7 +1,5 @@
 #include "runner/file/task_reader.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 #include <string>
@@ -9,8 +7,6 @@
 
 #include "runner/file/columns.hpp"
 #include "runner/file/file_reading.hpp"
-#include "runner/file/planned_columns.hpp"
-#include "runner/file/record.hpp"
 
 namespace rodsweep {
 namespace {
@@ -62,8 +58,7 @@ TaskList read_tasks(const hdf5::File& file, std::size_t count) {
       auto task = tasks.from(static_cast<std::int64_t>(begin));
       for (std::size_t i = 0; i < read.size(); ++i, ++task)
         if (const Task listed = *task; member(listed) != member(read[i]))
-          throw Damage(
-              fmt::format("{} of task {} is {}; must be {}", path, begin + i, member(read[i]), member(listed)));
+          throw Damage("{} of task {} is {}; must be {}", path, begin + i, member(read[i]), member(listed));
     });
   }
   return tasks;
@@ -102,22 +97,17 @@ TaskReader::TaskReader(const fs::path& path, Times times, std::shared_ptr<const 
     if (!tasks_) tasks_ = std::make_shared<const TaskList>(read_tasks(file_, states_.size()));
     sizes_ = {axis_size(file_, "/axes/guess", 0), axis_size(file_, "/axes/tolerance", 0),
               axis_size(file_, "/trajectories/first_row", 1)};
-    const auto rows = [&](const char* dataset) { return hdf5::RowDataset(file_.id(), dataset); };
     for (const Column& column : columns())
-      columns_.push_back(is_timing(column) && times == Times::left_out ? hdf5::RowDataset() : rows(column.path));
-    message_ = rows("/tasks/message");
-    checksum_ = rows("/tasks/checksum");
-    rank_ = rows("/timing/tasks/rank");
-    host_ = rows("/timing/tasks/host");
-    run_ = rows("/timing/tasks/run");
-    write_s_ = rows("/timing/tasks/write_s");
+      columns_.push_back(is_timing(column) && times == Times::left_out ? hdf5::RowDataset()
+                                                                       : hdf5::RowDataset(file_.id(), column.path));
+    rows_ = TaskRows(file_.id());
   });
 }
 
 TaskOutcome TaskReader::outcome(std::int64_t task) const {
   if (!done(task)) return TaskOutcome::pending;
   if (const auto outcome = outcomes_[static_cast<std::size_t>(task)]) return *outcome;
-  const std::string text = hdf5::read_text_row(file_.id(), "/tasks/outcome", static_cast<std::size_t>(task));
+  const std::string text = rows_.outcome.text(static_cast<std::size_t>(task));
   throw damaged_error(path_, "\"" + text + "\" is not an outcome of a task");
 }
 
@@ -137,10 +127,10 @@ bool TaskReader::read(std::int64_t index, TaskRecord& record) const {
         columns_[c].read(column.type(), static_cast<hsize_t>(rows.first), static_cast<hsize_t>(rows.count),
                          data_of(column, record));
     }
-    record.message = hdf5::read_text_row(message_, static_cast<hsize_t>(index));
+    record.message = rows_.message.text(static_cast<hsize_t>(index));
     const auto outcome = outcomes_[static_cast<std::size_t>(index)];
     record.outcome = outcome.value_or(TaskOutcome::error);
-    return outcome && task_checksum(index, record) == hdf5::read_row<std::uint64_t>(checksum_, index);
+    return outcome && task_checksum(index, record) == rows_.checksum.number<std::uint64_t>(index);
   });
 }
 
@@ -151,8 +141,8 @@ bool TaskReader::read_intact(std::int64_t task, TaskRecord& record) const try {
 }
 
 TaskOrigin TaskReader::origin(std::int64_t task) const {
-  return {hdf5::read_row<std::int32_t>(rank_, task), hdf5::read_row<std::int32_t>(run_, task),
-          hdf5::read_text_row(host_, static_cast<hsize_t>(task)), hdf5::read_row<double>(write_s_, task)};
+  return {rows_.rank.number<std::int32_t>(task), rows_.run.number<std::int32_t>(task),
+          rows_.host.text(static_cast<hsize_t>(task)), rows_.write_s.number<double>(task)};
 }
 
 }  // namespace rodsweep

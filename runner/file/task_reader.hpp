@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "runner/file/hdf5.hpp"
+#include "runner/file/layout.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
 #include "runner/plan/task_list.hpp"
@@ -51,7 +51,7 @@ class TaskReader {
   std::vector<std::uint8_t> states_;
   std::vector<std::optional<TaskOutcome>> outcomes_;  ///< none: not the name of an outcome
   std::vector<hdf5::RowDataset> columns_;             ///< in the order of columns(); empty: not in the file
-  hdf5::RowDataset message_, checksum_, rank_, host_, run_, write_s_;
+  TaskRows rows_;
 };
 
 }  // namespace rodsweep

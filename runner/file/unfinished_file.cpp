@@ -23,9 +23,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-FileError exists_error(const fs::path& path) {
-  return FileError(
-      fmt::format("{} exists already and is never overwritten: name another file with -o FILE", path.native()));
+FileError exists_error(const fs::path& path, const char* advice = "") {
+  return FileError("{} exists already and is never overwritten: {}name another file with -o FILE", path.native(),
+                   advice);
 }
 
 constexpr const char* mark = ".unfinished-";
@@ -48,7 +48,7 @@ bool lives(pid_t process) { return process > 0 && (kill(process, 0) == 0 || errn
 }  // namespace
 
 FileError creation_error(const fs::path& path, const std::string& reason) {
-  return FileError(fmt::format("{} cannot be created: {}", path.native(), reason));
+  return FileError("{} cannot be created: {}", path.native(), reason);
 }
 
 FileError writing_error(const fs::path& path, const std::string& reason) {
@@ -56,9 +56,9 @@ FileError writing_error(const fs::path& path, const std::string& reason) {
       path, reason + ". The incomplete file was removed: free some space, or name a file on another disk with -o FILE");
 }
 
-void refuse_existing(const fs::path& path) {
+void refuse_existing(const fs::path& path, const char* advice) {
   std::error_code error;
-  if (fs::exists(fs::symlink_status(path, error))) throw exists_error(path);
+  if (fs::exists(fs::symlink_status(path, error))) throw exists_error(path, advice);
 }
 
 fs::path file_beside(const fs::path& file, const std::string& ending) {
@@ -74,7 +74,7 @@ void make_folder_of(const fs::path& path) {
 FileIdentity identity_of(const fs::path& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0)
-    throw FileError(fmt::format("{} cannot be found: {}", path.native(), std::system_category().message(errno)));
+    throw FileError("{} cannot be found: {}", path.native(), std::system_category().message(errno));
   return {status.st_dev, status.st_ino};
 }
 
@@ -133,7 +133,7 @@ void UnfinishedFile::publish() const {
 
 void UnfinishedFile::replace(const FileIdentity& earlier) const {
   if (!(identity_of(path_) == earlier))
-    throw FileError(fmt::format("{} was replaced by another program and is not overwritten", path_.native()));
+    throw FileError("{} was replaced by another program and is not overwritten", path_.native());
   SyncedFile(temporary_).sync();
   if (rename(temporary_.c_str(), path_.c_str()) != 0)
     throw creation_error(path_, std::system_category().message(errno));

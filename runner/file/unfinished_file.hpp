@@ -49,8 +49,9 @@ class UnfinishedFile {
 /// A message about temporary files left by killed programs that were creating `path`; empty if there are none.
 std::string unfinished_text(const std::filesystem::path& path);
 
-/// Throws FileError if the path exists, also as a dangling link.
-void refuse_existing(const std::filesystem::path& path);
+/// Throws FileError if the path exists, also as a dangling link. `advice`: before that to name another file.
+void refuse_existing(const std::filesystem::path& path, const char* advice = "");
+inline constexpr const char* resume_advice = "continue it with --resume, or ";
 
 /// results/demo.h5, "-task-12": results/demo-task-12.h5
 std::filesystem::path file_beside(const std::filesystem::path& file, const std::string& ending);

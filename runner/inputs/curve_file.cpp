@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "runner/inputs/parsed_file.hpp"
-#include "runner/text/key_path.hpp"
-#include "runner/text/shortened.hpp"
+#include "runner/text/job_error.hpp"
 #include "runner/text/strict_json.hpp"
 #include "runner/text/words.hpp"
 
@@ -61,7 +60,7 @@ class Lines {
     return {number<double>(x, "x", bound), number<double>(y, "y", bound), number<double>(z, "z", bound)};
   }
   [[noreturn]] void refuse(const std::string& text) const {
-    throw CurveError(fmt::format("{}:{}: {}", file_.native(), number_, text));
+    throw CurveError("{}:{}: {}", file_.native(), number_, text);
   }
 
  private:
@@ -223,7 +222,7 @@ class JsonCurves {
     return found;
   }
   [[noreturn]] void refuse(const std::string& path, const std::string& text) const {
-    throw CurveError(fmt::format("{}: {}: {}", file_.native(), path, text));
+    throw CurveError("{}: {}: {}", file_.native(), path, text);
   }
 
   const std::filesystem::path& file_;

@@ -12,18 +12,17 @@
 #pragma once
 
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "runner/text/formatted_error.hpp"
 #include "solver/scene/curve_graph.hpp"
 
 namespace rodsweep {
 
 /// "FILE:LINE: TEXT", in JSON "FILE: KEY: TEXT".
-class CurveError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
+struct CurveError : FormattedError<> {
+  using FormattedError::FormattedError;
 };
 
 std::vector<Curve> parse_curves(const std::string& text, const std::filesystem::path& file);

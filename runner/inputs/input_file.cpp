@@ -7,11 +7,10 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <vector>
 
 #include "runner/text/checksum.hpp"
 #include "runner/text/job_error.hpp"
-#include "runner/text/nearest.hpp"
+#include "runner/text/words.hpp"
 
 namespace rodsweep {
 namespace {
@@ -45,10 +44,9 @@ std::string missing_file_text(const fs::path& job, const MissingFile& file) {
     advice = fmt::format("; if {} makes it, run that job first", maker.native());
   else if (const std::string near = nearest_name(file); !near.empty())
     advice = fmt::format("; did you mean \"{}\"?", near);
-  return job_error(
-             job, file.key_path,
-             fmt::format("\"{}\" is not allowed: {} was not found; the path is relative to the job file's folder{}",
-                         file.written, file.path.native(), advice))
+  return job_error(job, file.key_path,
+                   "\"{}\" is not allowed: {} was not found; the path is relative to the job file's folder{}",
+                   file.written, file.path.native(), advice)
       .what();
 }
 
@@ -56,9 +54,8 @@ InputFile input_file(const std::filesystem::path& job, const std::string& key_pa
                      MissingFiles missing) {
   const std::filesystem::path path = job.parent_path() / text;
   const auto refuse = [&](const std::string& reason) {
-    throw job_error(job, key_path,
-                    fmt::format("\"{}\" is not allowed: {} {}; the path is relative to the job file's folder", text,
-                                path.native(), reason));
+    throw job_error(job, key_path, "\"{}\" is not allowed: {} {}; the path is relative to the job file's folder", text,
+                    path.native(), reason);
   };
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {

@@ -9,10 +9,9 @@
 #include <map>
 #include <sstream>
 #include <utility>
-#include <vector>
 
 #include "runner/inputs/parsed_file.hpp"
-#include "runner/text/shortened.hpp"
+#include "runner/text/words.hpp"
 
 namespace rodsweep {
 namespace {
@@ -134,9 +133,9 @@ class Reader {
       const auto index = static_cast<std::size_t>(&line - lines_.data());
       if (placed[index] || std::find(dropped_.begin(), dropped_.end(), static_cast<int>(index)) != dropped_.end())
         continue;
-      refuse(line.number, fmt::format("parent is {}, below which this node is: a loop; one of its nodes must have the "
-                                      "parent -1",
-                                      line.parent));
+      refuse(line.number,
+             fmt::format("parent is {}, below which this node is: a loop; one of its nodes must have the parent -1",
+                         line.parent));
     }
     return order;
   }
@@ -220,7 +219,7 @@ class Reader {
   }
 
   [[noreturn]] void refuse(int line, const std::string& text) const {
-    throw SkeletonError(fmt::format("{}:{}: {}", file_.native(), line, text));
+    throw SkeletonError("{}:{}: {}", file_.native(), line, text);
   }
 
   const std::string& text_;

@@ -10,19 +10,17 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "runner/text/formatted_error.hpp"
 #include "solver/scene/tree_skeleton.hpp"
 
 namespace rodsweep {
 
 /// "FILE:LINE: TEXT".
-class SkeletonError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
+struct SkeletonError : FormattedError<> {
+  using FormattedError::FormattedError;
 };
 
 struct SkeletonFile {

@@ -1,7 +1,6 @@
 #include "runner/job/job.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -9,14 +8,15 @@
 
 #include "runner/job/scene_checks.hpp"
 #include "runner/keys/job_reader.hpp"
-#include "runner/keys/tables.hpp"
+#include "runner/keys/key.hpp"
 #include "runner/specs/training_job.hpp"
 #include "runner/sweep/sweep_space.hpp"
-#include "runner/text/key_path.hpp"
 #include "runner/text/strict_json.hpp"
 
 namespace rodsweep {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_bytes = 16 << 20;  // takes a second and a gigabyte to read
 
@@ -30,18 +30,17 @@ void check_guesses(const Job& job, const SweepSpace& space) {
   for (const auto& guess : guesses) {
     if (guess.contains("zero")) return;
   }
-  throw job_error(
-      job.path, "guesses",
-      "solve.method \"cg\" needs \"zero\" in this list, the denominator of every ratio; for example [\"zero\", "
-      "\"previous\", \"quadratic\"]");
+  throw job_error(job.path, "guesses",
+                  "solve.method \"cg\" needs \"zero\" in this list, the denominator of every ratio; for example "
+                  "[\"zero\", \"previous\", \"quadratic\"]");
 }
 
 void check_samples(const Job& job, const SweepSpace& space) {
   if (job.samples == 1 || space.every_point_is_random()) return;
   throw job_error(job.path, "samples",
-                  fmt::format("{} is not allowed: at some grid points nothing is random, and all samples are equal; "
-                              "must be 1, or make a value random there, such as {{\"uniform\": [a, b]}}",
-                              job.samples));
+                  "{} is not allowed: at some grid points nothing is random, and all samples are equal; must be 1, or "
+                  "make a value random there, such as {{\"uniform\": [a, b]}}",
+                  job.samples);
 }
 
 /// `look(written, key_path)` returns an input file.
@@ -72,6 +71,13 @@ Job parsed(std::string text, const std::filesystem::path& path, Look look) {
   check_obstacles(job.values["scene"], path);
   for (std::string& warning : scene_warnings(job)) job.warnings.push_back(std::move(warning));
   return job;
+}
+
+/// By JSON pointer.
+Json settings(const Job& job) {
+  Json values = job.values;
+  for (const char* free : {"name", "description", "$schema"}) values.erase(free);
+  return values.flatten();
 }
 
 }  // namespace
@@ -107,10 +113,10 @@ std::string read_job_text(const std::filesystem::path& path) {
   }
   if (text.size() > most_bytes)
     throw job_error(path, "",
-                    fmt::format("is too large; must be at most {} MB: replace lists by `samples` of ranges, such as "
-                                "{{\"uniform\": [a, b]}}, or split the job",
-                                most_bytes >> 20));
-  if (!in.eof()) throw job_error(path, "", fmt::format("cannot be read: {}", std::strerror(errno ? errno : EIO)));
+                    "is too large; must be at most {} MB: replace lists by `samples` of ranges, such as {{\"uniform\": "
+                    "[a, b]}}, or split the job",
+                    most_bytes >> 20);
+  if (!in.eof()) throw job_error(path, "", "cannot be read: {}", std::strerror(errno ? errno : EIO));
   return text;
 }
 
@@ -132,6 +138,26 @@ std::vector<MissingFile> missing_files(const Job& job) {
     if (!std::filesystem::exists(path, error)) missing.push_back({listed ? element("data", i) : "data", written, path});
   }
   return missing;
+}
+
+std::string shown(const Json& value) {
+  if (value.is_null()) return "nothing";
+  constexpr std::size_t longest = 80;
+  const std::string text = value.dump();
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+}
+
+std::optional<JobDifference> first_difference(const Job& now, const Job& before) {
+  const Json a = settings(now), b = settings(before);
+  for (const Json* keys : {&b, &a})
+    for (const auto& [pointer, ignored] : keys->items()) {
+      const Json value = a.value(pointer, Json()), earlier = b.value(pointer, Json());
+      if (value == earlier) continue;
+      std::string key = pointer.substr(1);
+      std::replace(key.begin(), key.end(), '/', '.');
+      return JobDifference{key, shown(value), shown(earlier)};
+    }
+  return std::nullopt;
 }
 
 }  // namespace rodsweep

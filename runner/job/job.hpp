@@ -5,9 +5,11 @@
 // {"integer": [a, b]}. runner/sweep/sweep_space.hpp explains their expansion.
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,5 +43,18 @@ Job parse_job(std::string text, const std::filesystem::path& path, const InputFi
 
 /// The missing files of a job read with MissingFiles::accepted, and missing data sets of a training.
 std::vector<MissingFile> missing_files(const Job& job);
+
+/// Where the values of two jobs differ. Values include defaults; the layout of the JSON text, the order of keys and the
+/// form of a number (1000, 1e3) make no difference.
+struct JobDifference {
+  std::string key;          ///< "scene.length_m"
+  std::string now, before;  ///< shown() values
+};
+
+/// A value for a message: its JSON, shortened; "nothing" for null, which stands for a missing key.
+std::string shown(const nlohmann::ordered_json& value);
+
+/// The first difference; none if the jobs are the same. Names, descriptions and $schema may differ.
+std::optional<JobDifference> first_difference(const Job& now, const Job& before);
 
 }  // namespace rodsweep

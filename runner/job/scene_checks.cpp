@@ -1,7 +1,5 @@
 #include "runner/job/scene_checks.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,12 +8,19 @@
 #include "runner/inputs/skeleton_file.hpp"
 #include "runner/keys/sweep_words.hpp"
 #include "runner/specs/scene_keys.hpp"
-#include "runner/text/key_path.hpp"
+#include "runner/text/job_error.hpp"
 
 namespace rodsweep {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Adds a line about a key. `text`: maybe a format and its values.
+template <class... Text>
+void warn(std::vector<std::string>& warnings, const std::filesystem::path& file, const std::string& key,
+          const Text&... text) {
+  warnings.emplace_back(job_error(file, key, text...).what());
+}
 
 /// Calls `visit(object, path)` for an object, or for each of a sweep of objects.
 template <class Visit>
@@ -86,10 +91,8 @@ std::vector<std::string> thick_rods(const Json& scenes, const std::filesystem::p
       visit_numbers(scene.value(across, Json()), "",
                     [&](double number, const std::string&) { shortest = std::min(shortest, number); });
       if (2 * thickest > shortest)
-        warnings.emplace_back(job_error(file, place,
-                                        fmt::format("{:g} m makes a rod thicker than long: {} is {:g} m{}", thickest,
-                                                    across, shortest, other_unit(radius, thickest, shortest / 2)))
-                                  .what());
+        warn(warnings, file, place, "{:g} m makes a rod thicker than long: {} is {:g} m{}", thickest, across, shortest,
+             other_unit(radius, thickest, shortest / 2));
     }
   });
   return warnings;
@@ -125,10 +128,8 @@ std::vector<std::string> joined_curves(const Job& job) {
         try {
           const double shift = unit_m * joining_shift(shared_curves(file.path, file.hash), farthest / unit_m);
           if (shift > 0)
-            warnings.emplace_back(job_error(job.path, place,
-                                            fmt::format("points of {} move by up to {:.3g} m to where they meet",
-                                                        written.get<std::string>(), shift))
-                                      .what());
+            warn(warnings, job.path, place, "points of {} move by up to {:.3g} m to where they meet",
+                 written.get<std::string>(), shift);
         } catch (const CurveError&) {  // the plan refuses it
         } catch (const SceneError&) {
         }
@@ -156,12 +157,10 @@ std::vector<std::string> jumping_loads(const Json& values, const std::filesystem
       const Json &from_s = times_s[i - 1], &to_s = times_s[i];
       if (!from_s.is_number() || !to_s.is_number() || factors[i - 1] == factors[i]) continue;
       if (to_s.get<double>() - from_s.get<double>() >= step_s) continue;
-      warnings.emplace_back(
-          job_error(file, element(member(path, "times_s"), i),
-                    fmt::format("the load jumps within a step of {:g} s, and with integrator \"bdf2\" the "
-                                "old one acts for half a step too long; let it change over some steps",
-                                step_s))
-              .what());
+      warn(warnings, file, element(member(path, "times_s"), i),
+           "the load jumps within a step of {:g} s, and with integrator \"bdf2\" the old one acts for half a step too "
+           "long; let it change over some steps",
+           step_s);
     }
   };
   visit_objects(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
@@ -179,21 +178,20 @@ std::vector<std::string> unbalanced_loads(const Json& values, const std::filesys
                 [&](const Json& time, const std::string&) { balances |= time["balance"] != false; });
   if (balances || (method.is_string() && method != "cg" && method != "direct")) return {};
   std::vector<std::string> warnings;
-  const auto warn = [&](const std::string& path, const char* what, const char* also = "") {
-    warnings.emplace_back(
-        job_error(file, path,
-                  fmt::format("{}; set \"balance\": true{} in \"time\" (methods direct and cg)", what, also))
-            .what());
+  const auto unbalanced = [&](const std::string& path, const char* what, const char* also = "") {
+    warn(warnings, file, path, "{}; set \"balance\": true{} in \"time\" (methods direct and cg)", what, also);
   };
   visit_objects(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
     for (const char* load : {"tip_force_n", "tip_torque_nm", "loads"}) {
       if (scene["type"] == Lattice::name && load == std::string("tip_force_n")) continue;  // at centres of segments
       if ((std::string(load) == "loads" && has_item(scene["loads"])) || may_be_nonzero(scene.value(load, Json())))
-        warn(member(path, load), "the rest shape under a point load depends on time.step_s, most of all near buckling");
+        unbalanced(member(path, load),
+                   "the rest shape under a point load depends on time.step_s, most of all near buckling");
     }
     if (const std::string twist = what_twists(scene, path); !twist.empty())
-      warn(twist, "a rod that is twisted or spun can sag or lag many times too far unless time.step_s is very short",
-           " and, for spin, \"integrator\": \"bdf2\"");
+      unbalanced(twist,
+                 "a rod that is twisted or spun can sag or lag many times too far unless time.step_s is very short",
+                 " and, for spin, \"integrator\": \"bdf2\"");
   });
   return warnings;
 }
@@ -204,8 +202,8 @@ void check_obstacles(const Json& scenes, const std::filesystem::path& file) {
   visit_objects(scenes, "scene", [&](const Json& scene, const std::string& path) {
     if (scene["contact"] == "none" && has_item(scene["obstacles"]))
       throw job_error(file, member(path, "obstacles"),
-                      "rods without \"contact\" pass through obstacles; give the scene \"contact\": "
-                      "{\"friction\": 0.3}, or remove this key");
+                      "rods without \"contact\" pass through obstacles; give the scene \"contact\": {\"friction\": "
+                      "0.3}, or remove this key");
   });
 }
 

@@ -6,17 +6,12 @@
 #include <cmath>
 
 #include "runner/keys/sweep_words.hpp"
-#include "runner/text/job_error.hpp"
-#include "runner/text/key_path.hpp"
-#include "runner/text/nearest.hpp"
-#include "runner/text/shortened.hpp"
+#include "runner/text/words.hpp"
 
 namespace rodsweep {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::size_t most_told = 20;  // mistakes
 
 /// A value as JSON, shortened.
 std::string written(const Json& value) { return shortened(value.dump()); }
@@ -65,23 +60,18 @@ bool has_form(const std::string& text, Key::Text form) {
 
 }  // namespace
 
-void JobReader::mistake(const std::string& path, const std::string& text) {
-  if (mistakes_++ < most_told) told_.emplace_back(job_error(file_, path, text).what());
-}
-
-void JobReader::refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark) {
-  mistake(path, fmt::format("{} is not allowed; must be {}{}{}", written(value), allowed(key), remark,
-                            sweep_advice(key, value)));
+const Json& JobReader::refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark) {
+  mistake(path, "{} is not allowed; must be {}{}{}", written(value), allowed(key), remark, sweep_advice(key, value));
+  return value;
 }
 
 void JobReader::warn_if_implausible(const Key& key, double value, const std::string& path) {
   if (!key.plausible || is_plausible(key, value)) return;
   const auto& [least, most, known] = *key.plausible;
-  warnings_.emplace_back(
-      job_error(file_, path,
-                fmt::format("{:g} {} is outside the plausible range, {:g} to {:g} {}{}{}", value, key.unit, least, most,
-                            key.unit, known.empty() ? "" : fmt::format(" ({})", known), other_unit(key, value, most)))
-          .what());
+  warnings_.emplace_back(job_error(file_, path, "{:g} {} is outside the plausible range, {:g} to {:g} {}{}{}", value,
+                                   key.unit, least, most, key.unit, known.empty() ? "" : fmt::format(" ({})", known),
+                                   other_unit(key, value, most))
+                             .what());
 }
 
 void JobReader::throw_mistakes() const {
@@ -108,10 +98,7 @@ Json JobReader::read(const Key& key, const Json& value, const std::string& path)
     case Key::Kind::guess: return read_guess(key, value, path, false);
     case Key::Kind::guesses: return read_guesses(value, path);
     case Key::Kind::vector: {
-      if (!value.is_array() || value.size() != 3) {
-        refuse(key, value, path);
-        return value;
-      }
+      if (!value.is_array() || value.size() != 3) return refuse(key, value, path);
       Json result = Json::array();
       for (std::size_t i = 0; i < 3; ++i) result.push_back(read(component_key(key), value[i], element(path, i)));
       return result;
@@ -129,13 +116,12 @@ Json JobReader::read_sweep(const Key& key, const Json& value, const std::string&
     return value;
   }
   if (value.size() != 1) {
-    mistake(path, fmt::format("{} is not allowed; a sweep must have no key other than \"{}\"", written(value), word));
+    mistake(path, "{} is not allowed; a sweep must have no key other than \"{}\"", written(value), word);
     return value;
   }
   if (!is_listed(word)) return Json{{word, read_range(key, word, content, member(path, word))}};
   if (!content.is_array() || content.empty()) {
-    mistake(member(path, word),
-            fmt::format("{} is not allowed; must be a list of at least one value", written(content)));
+    mistake(member(path, word), "{} is not allowed; must be a list of at least one value", written(content));
     return value;
   }
   Json values = Json::array();
@@ -148,15 +134,15 @@ Json JobReader::read_sweep(const Key& key, const Json& value, const std::string&
 Json JobReader::read_range(const Key& key, const std::string& word, const Json& ends, const std::string& path) {
   const bool whole = word == "integer";
   if (key.kind == Key::Kind::integer && !whole) {
-    mistake(path, fmt::format("{} draws fractional numbers; use {{\"integer\": [a, b]}} here", word));
+    mistake(path, "{} draws fractional numbers; use {{\"integer\": [a, b]}} here", word);
     return ends;
   }
   if (key.kind != Key::Kind::integer && key.kind != Key::Kind::number) {
-    mistake(path, fmt::format("{} draws a number, which is not allowed here; must be {}", word, allowed(key)));
+    mistake(path, "{} draws a number, which is not allowed here; must be {}", word, allowed(key));
     return ends;
   }
   if (!ends.is_array() || ends.size() != 2) {
-    mistake(path, fmt::format("{} is not allowed; must be the two ends of a range [a, b]", written(ends)));
+    mistake(path, "{} is not allowed; must be the two ends of a range [a, b]", written(ends));
     return ends;
   }
   Key end_key = key;
@@ -175,9 +161,9 @@ Json JobReader::read_range(const Key& key, const std::string& word, const Json& 
   if (mistakes_ != before) return ends;
   const double low = result[0].get<double>(), high = result[1].get<double>();
   if (low > high) {
-    mistake(path, fmt::format("{} is not allowed; the first end must not be above the second", written(ends)));
+    mistake(path, "{} is not allowed; the first end must not be above the second", written(ends));
   } else if (word == "log_uniform" && low <= 0) {
-    mistake(path, fmt::format("{} is not allowed; a log_uniform range must lie above 0", written(ends)));
+    mistake(path, "{} is not allowed; a log_uniform range must lie above 0", written(ends));
   }
   return result;
 }
@@ -187,19 +173,14 @@ Json JobReader::read_number(const Key& key, const Json& value, const std::string
     for (const std::string& word : key.choices) {
       if (value == word) return value;
     }
-    refuse(key, value, path, key.choices.size() > 1 ? did_you_mean(value.get<std::string>(), key.choices) : "");
-    return value;
+    return refuse(key, value, path, key.choices.size() > 1 ? did_you_mean(value.get<std::string>(), key.choices) : "");
   }
-  if (value.is_object() && value.size() == 1) {
-    refuse(key, value, path, did_you_mean(value.begin().key(), sweep_words()));
-    return value;
-  }
+  if (value.is_object() && value.size() == 1)
+    return refuse(key, value, path, did_you_mean(value.begin().key(), sweep_words()));
   const bool whole = key.kind == Key::Kind::integer;
   if (!value.is_number() || !within(key, value.get<double>()) ||
-      (whole && std::trunc(value.get<double>()) != value.get<double>())) {
-    refuse(key, value, path);
-    return value;
-  }
+      (whole && std::trunc(value.get<double>()) != value.get<double>()))
+    return refuse(key, value, path);
   warn_if_implausible(key, value.get<double>(), path);
   return whole ? Json(static_cast<std::int64_t>(value.get<double>())) : value;
 }
@@ -211,10 +192,7 @@ void JobReader::use(const std::string& file, FileKind kind, const std::string& p
 }
 
 Json JobReader::read_text(const Key& key, const Json& value, const std::string& path) {
-  if (!value.is_string()) {
-    refuse(key, value, path);
-    return value;
-  }
+  if (!value.is_string()) return refuse(key, value, path);
   const auto& text = value.get_ref<const std::string&>();
   if (key.kind == Key::Kind::text) {
     if (static_cast<double>(text.size()) > key.high || !has_form(text, key.text))
@@ -226,8 +204,7 @@ Json JobReader::read_text(const Key& key, const Json& value, const std::string& 
   for (const std::string& choice : key.choices) {
     if (text == choice) return value;
   }
-  refuse(key, value, path, key.choices.size() > 1 ? did_you_mean(text, key.choices) : "");
-  return value;
+  return refuse(key, value, path, key.choices.size() > 1 ? did_you_mean(text, key.choices) : "");
 }
 
 }  // namespace rodsweep

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runner/keys/key.hpp"
+#include "runner/text/job_error.hpp"
 
 namespace rodsweep {
 
@@ -48,8 +49,13 @@ class JobReader {
   void fill_absent(const Key& key, const std::string& path, Json& result);
   bool applies(const Key& key) const;
   void warn_if_implausible(const Key& key, double value, const std::string& path);
-  void refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark = "");
-  void mistake(const std::string& path, const std::string& text);
+  /// Returns the value.
+  const Json& refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark = "");
+  /// `text`: maybe a format and its values.
+  template <class... Text>
+  void mistake(const std::string& path, const Text&... text) {
+    if (mistakes_++ < most_told) told_.emplace_back(job_error(file_, path, text...).what());
+  }
 
   /// The tag determines which keys apply. An object without a tag has that of its parent.
   struct Tag {
@@ -57,6 +63,7 @@ class JobReader {
   };
   static Tag tag_of(const Key& key, const Json& value, const std::string& path);
 
+  static constexpr std::size_t most_told = 20;
   std::filesystem::path file_;
   Tag tag_;
   std::size_t mistakes_ = 0;

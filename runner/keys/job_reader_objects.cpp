@@ -5,21 +5,15 @@
 #include <map>
 
 #include "runner/keys/job_reader.hpp"
+#include "runner/keys/key.hpp"
 #include "runner/keys/sweep_words.hpp"
-#include "runner/keys/tables.hpp"
-#include "runner/text/key_path.hpp"
-#include "runner/text/nearest.hpp"
+#include "runner/text/job_error.hpp"
+#include "runner/text/words.hpp"
 
 namespace rodsweep {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::vector<std::string> names(const std::vector<Key>& keys) {
-  std::vector<std::string> result;
-  for (const Key& key : keys) result.push_back(key.name);
-  return result;
-}
 
 /// "a" or "b"
 std::string alternatives(const std::vector<std::string>& words) {
@@ -117,10 +111,7 @@ JobReader::Tag JobReader::tag_of(const Key& key, const Json& value, const std::s
 }
 
 Json JobReader::read_object(const Key& key, const Json& value, const std::string& path) {
-  if (!value.is_object()) {
-    refuse(key, value, path);
-    return value;
-  }
+  if (!value.is_object()) return refuse(key, value, path);
   const Tag outer = tag_;
   if (!key.tag.empty()) tag_ = tag_of(key, value, path);
   Json result = Json::object();
@@ -129,8 +120,8 @@ Json JobReader::read_object(const Key& key, const Json& value, const std::string
     if (!child_key || !applies(*child_key))
       refuse_unknown(key, name, path);
     else if (result.contains(child_key->name))
-      mistake(member(path, name),
-              fmt::format("\"{}\" and \"{}\" are the same key; give only one", child_key->name, child_key->alias));
+      mistake(member(path, name), "\"{}\" and \"{}\" are the same key; give only one", child_key->name,
+              child_key->alias);
     else
       result[child_key->name] = read(*child_key, child, member(path, name));
   }
@@ -140,10 +131,7 @@ Json JobReader::read_object(const Key& key, const Json& value, const std::string
 }
 
 Json JobReader::read_variant(const Key& key, const Json& value, const std::string& path) {
-  if (!value.is_object() || value.size() != 1) {
-    refuse(key, value, path);
-    return value;
-  }
+  if (!value.is_object() || value.size() != 1) return refuse(key, value, path);
   const std::string& kind = value.begin().key();
   if (const Key* found = find_key(key.keys, kind))
     return Json{{kind, read(*found, value.begin().value(), member(path, kind))}};
@@ -152,10 +140,7 @@ Json JobReader::read_variant(const Key& key, const Json& value, const std::strin
 }
 
 Json JobReader::read_list(const Key& key, const Json& value, const std::string& path) {
-  if (!value.is_array()) {
-    refuse(key, value, path);
-    return value;
-  }
+  if (!value.is_array()) return refuse(key, value, path);
   return read_items(key.keys.front(), value, path);
 }
 
@@ -167,9 +152,8 @@ Json JobReader::read_items(const Key& item, const Json& values, const std::strin
 
 void JobReader::refuse_unknown(const Key& key, const std::string& name, const std::string& path) {
   if (const Key* other = find_key(key.keys, name)) {
-    mistake(member(path, name),
-            fmt::format("this key belongs to {} {}, not to \"{}\"{}{}", tag_.path, alternatives(other->only_for),
-                        tag_.value, other->only_advice.empty() ? "" : "; ", other->only_advice));
+    mistake(member(path, name), "this key belongs to {} {}, not to \"{}\"{}{}", tag_.path,
+            alternatives(other->only_for), tag_.value, other->only_advice.empty() ? "" : "; ", other->only_advice);
     return;
   }
   std::vector<std::string> known, words;
@@ -212,9 +196,9 @@ void JobReader::fill_absent(const Key& key, const std::string& path, Json& resul
       if (result.contains(child->name)) given.push_back(child->name);
     }
     if (given.empty()) {
-      mistake(path, fmt::format("missing: the {}, exactly one of {}", group, quoted_list(all)));
+      mistake(path, "missing: the {}, exactly one of {}", group, quoted_list(all));
     } else if (given.size() > 1) {
-      mistake(path, fmt::format("{} exclude each other; give exactly one", quoted_list(given)));
+      mistake(path, "{} exclude each other; give exactly one", quoted_list(given));
     }
   }
 }
@@ -233,10 +217,7 @@ Json JobReader::read_guess(const Key& key, const Json& value, const std::string&
     return value;
   }
   const Key* guess = find_key(guess_keys(), name);
-  if (!guess) {
-    refuse(key, value, path, did_you_mean(name, names(guess_keys())));
-    return value;
-  }
+  if (!guess) return refuse(key, value, path, did_you_mean(name, names(guess_keys())));
   Key keys = *guess;
   if (labelled) keys.keys.push_back(Key(guess_label_key()).defaults_to(name));
   if (!given.is_object()) {
@@ -274,10 +255,7 @@ Json JobReader::read_varying_guess(const Key& key, Json sweep, std::size_t index
 
 Json JobReader::read_guesses(const Json& value, const std::string& path) {
   const Key guess = guess_key("guess", "initial guess of cg");
-  if (!value.is_array()) {
-    refuse(guesses_key("guesses", ""), value, path);
-    return value;
-  }
+  if (!value.is_array()) return refuse(guesses_key("guesses", ""), value, path);
   Json result = Json::array();
   std::map<std::string, std::size_t> labels;
   for (std::size_t i = 0; i < value.size(); ++i) {
@@ -288,9 +266,8 @@ Json JobReader::read_guesses(const Json& value, const std::string& path) {
     const std::string label = guess_label(result.back());
     const auto [first, is_new] = labels.emplace(label, i);
     if (!is_new) {
-      mistake(element(path, i),
-              fmt::format("its label \"{}\" is also the label of {}; give one of them another \"label\"", label,
-                          element(path, first->second)));
+      mistake(element(path, i), "its label \"{}\" is also the label of {}; give one of them another \"label\"", label,
+              element(path, first->second));
     }
   }
   return result;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include "runner/keys/key.hpp"
 #include "runner/keys/sweep_words.hpp"
-#include "runner/keys/tables.hpp"
-#include "runner/text/key_path.hpp"
+#include "runner/text/job_error.hpp"
 
 namespace rodsweep {
 namespace {

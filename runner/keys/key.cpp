@@ -5,17 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/keys/tables.hpp"
-
 namespace rodsweep {
 namespace {
 
 Key make(Key::Kind kind, const char* name, const char* help) {
-  Key key;
-  key.kind = kind;
-  key.name = name;
-  key.help = help;
-  return key;
+  return Key().set(&Key::kind, kind).set(&Key::name, name).set(&Key::help, help);
 }
 
 std::string bounds(const Key& key) {
@@ -30,97 +24,8 @@ std::string bounds(const Key& key) {
 
 }  // namespace
 
-Key& Key::in(const char* si_unit) {
-  unit = si_unit;
-  return *this;
-}
-Key& Key::above(double bound) {
-  low = bound;
-  above_low = true;
-  return *this;
-}
-Key& Key::at_least(double bound) {
-  low = bound;
-  above_low = false;
-  return *this;
-}
-Key& Key::at_most(double bound) {
-  high = bound;
-  return *this;
-}
-Key& Key::from(double least, double most) { return at_least(least).at_most(most); }
-Key& Key::plausibly(double least, double most, const char* known) {
-  plausible = Plausible{least, most, known};
-  return *this;
-}
-Key& Key::or_word(const char* word) {
-  choices.emplace_back(word);
-  return *this;
-}
-Key& Key::defaults_to(nlohmann::ordered_json value) {
-  preset = std::move(value);
-  return *this;
-}
-Key& Key::only(std::vector<std::string> tag_values, const char* advice) {
-  only_for = std::move(tag_values);
-  return otherwise(advice);
-}
-Key& Key::otherwise(const char* advice) {
-  only_advice = advice;
-  return *this;
-}
-Key& Key::one_of_group(const char* group) {
-  alternative_group = group;
-  return *this;
-}
-Key& Key::of_form(Text form) {
-  text = form;
-  return *this;
-}
-Key& Key::also_accepted_as(const char* name) {
-  alias = name;
-  return *this;
-}
-Key& Key::also_called(std::vector<std::string> words) {
-  synonyms = std::move(words);
-  return *this;
-}
-Key& Key::unswept(const char* advice) {
-  sweepable = false;
-  no_sweep_advice = advice;
-  return *this;
-}
-Key& Key::or_list_of_such() {
-  or_list = true;
-  return *this;
-}
-Key& Key::unlabelled() {
-  labelled = false;
-  return *this;
-}
-
-Key& Key::on_sobol(int dimension) {
-  sobol_dimension = dimension;
-  return *this;
-}
-
-Key& Key::labelled_if_changed(const char* word) {
-  labelled_as_preset = false;
-  label_word = word;
-  return *this;
-}
-
-Key& Key::setting() {
-  sweepable = false;
-  parameter = false;
-  return *this;
-}
-
 Key object_key(const char* name, const char* help, std::vector<Key> keys, const char* tag) {
-  Key key = make(Key::Kind::object, name, help);
-  key.keys = std::move(keys);
-  key.tag = tag;
-  return key;
+  return make(Key::Kind::object, name, help).set(&Key::keys, std::move(keys)).set(&Key::tag, tag);
 }
 Key integer_key(const char* name, const char* help) { return make(Key::Kind::integer, name, help); }
 Key boolean_key(const char* name, const char* help) { return make(Key::Kind::boolean, name, help); }
@@ -128,43 +33,33 @@ Key number_key(const char* name, const char* help) { return make(Key::Kind::numb
 Key vector_key(const char* name, const char* help) { return make(Key::Kind::vector, name, help); }
 Key text_key(const char* name, const char* help) { return make(Key::Kind::text, name, help); }
 Key file_key(const char* name, FileKind kind, const char* help) {
-  Key key = text_key(name, help).at_most(4095).of_form(Key::Text::path);
-  key.file = kind;
-  return key;
+  return text_key(name, help).at_most(4095).of_form(Key::Text::path).set(&Key::file, kind);
 }
 Key choice_key(const char* name, const char* help, std::vector<std::string> choices) {
-  Key key = make(Key::Kind::choice, name, help);
-  key.choices = std::move(choices);
-  return key;
+  return make(Key::Kind::choice, name, help).set(&Key::choices, std::move(choices));
 }
 Key variant_key(const char* name, const char* help, std::vector<Key> kinds) {
-  Key key = make(Key::Kind::variant, name, help);
-  key.keys = std::move(kinds);
-  return key;
+  return make(Key::Kind::variant, name, help).set(&Key::keys, std::move(kinds));
 }
 Key list_key(const char* name, const char* help, Key item) {
-  Key key = make(Key::Kind::list, name, help);
-  key.keys.push_back(std::move(item));
-  return key;
+  return make(Key::Kind::list, name, help).set(&Key::keys, std::vector<Key>{std::move(item)});
 }
 Key guess_key(const char* name, const char* help) { return make(Key::Kind::guess, name, help); }
 Key guesses_key(const char* name, const char* help) { return make(Key::Kind::guesses, name, help); }
 
-Key item_key(const Key& listed) {
-  Key key = listed;
-  key.or_list = false;
-  return key;
-}
+Key item_key(const Key& listed) { return Key(listed).set(&Key::or_list, false); }
 
-Key component_key(const Key& vector) {
-  Key key = vector;
-  key.kind = Key::Kind::number;
-  return key;
-}
+Key component_key(const Key& vector) { return Key(vector).set(&Key::kind, Key::Kind::number); }
 
 nlohmann::ordered_json number(double value) {
   if (std::trunc(value) == value && std::abs(value) <= 9007199254740991) return static_cast<std::int64_t>(value);
   return value;
+}
+
+std::vector<std::string> names(const std::vector<Key>& keys) {
+  std::vector<std::string> result;
+  for (const Key& key : keys) result.push_back(key.name);
+  return result;
 }
 
 std::string quoted_list(const std::vector<std::string>& words) {
@@ -189,17 +84,10 @@ std::string allowed(const Key& key) {
       return fmt::format(
           "a file name of 1 to {} letters, digits, \"_\", \"-\" or \".\", not beginning with \"-\" or \".\"", key.high);
     case Key::Kind::choice: return (key.choices.size() > 1 ? "one of " : "") + quoted_list(key.choices);
-    case Key::Kind::variant: {
-      std::vector<std::string> kinds;
-      for (const Key& kind : key.keys) kinds.push_back(kind.name);
-      return "an object {...} with one of " + quoted_list(kinds);
-    }
+    case Key::Kind::variant: return "an object {...} with one of " + quoted_list(names(key.keys));
     case Key::Kind::list: return "a list [...], where each item is " + allowed(key.keys.front());
-    case Key::Kind::guess: {
-      std::vector<std::string> names;
-      for (const Key& guess : guess_keys()) names.push_back(guess.name);
-      return "one of " + quoted_list(names) + ", or an object such as {\"oracle\": {\"error\": 0.1}}";
-    }
+    case Key::Kind::guess:
+      return "one of " + quoted_list(names(guess_keys())) + ", or an object such as {\"oracle\": {\"error\": 0.1}}";
     case Key::Kind::guesses: return "a list of guesses [...]";
   }
   throw std::logic_error("a kind of key without a description");

@@ -2,11 +2,13 @@
 // derived from it. job_keys.cpp has the root; key_table.hpp binds keys to the members that they fill.
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runner/inputs/input_file.hpp"
@@ -74,26 +76,39 @@ struct Key {
   std::string tag;        ///< object: the member whose value determines which `only_for` members apply
   std::vector<Key> keys;  ///< object: its members; variant: the kinds; list: the key of an item
 
-  Key& in(const char* si_unit);
-  Key& above(double bound);
-  Key& at_least(double bound);
-  Key& at_most(double bound);
-  Key& from(double least, double most);
-  Key& plausibly(double least, double most, const char* known = "");
-  Key& or_word(const char* word);
-  Key& defaults_to(nlohmann::ordered_json value);
-  Key& only(std::vector<std::string> tag_values, const char* advice = "");
-  Key& otherwise(const char* advice);  ///< sets only_advice; a KeyTable sets only_for
-  Key& one_of_group(const char* group);
-  Key& of_form(Text form);
-  Key& also_accepted_as(const char* name);
-  Key& also_called(std::vector<std::string> words);
-  Key& unswept(const char* advice = "");
-  Key& or_list_of_such();
-  Key& unlabelled();
-  Key& on_sobol(int dimension);
-  Key& labelled_if_changed(const char* word = "");  ///< "word value"
-  Key& setting();                                   ///< of the whole job: neither swept nor a parameter of tasks
+  template <class Value, class Given>
+  Key& set(Value Key::*member, Given&& value) {
+    this->*member = std::forward<Given>(value);
+    return *this;
+  }
+  Key& in(const char* si_unit) { return set(&Key::unit, si_unit); }
+  Key& above(double bound) { return set(&Key::low, bound).set(&Key::above_low, true); }
+  Key& at_least(double bound) { return set(&Key::low, bound).set(&Key::above_low, false); }
+  Key& at_most(double bound) { return set(&Key::high, bound); }
+  Key& from(double least, double most) { return at_least(least).at_most(most); }
+  Key& positive(double most) { return above(0).at_most(most); }
+  Key& plausibly(double least, double most, const char* known = "") {
+    return set(&Key::plausible, Plausible{least, most, known});
+  }
+  Key& or_word(const char* word) { return set(&Key::choices, std::vector<std::string>{word}); }
+  Key& defaults_to(nlohmann::ordered_json value) { return set(&Key::preset, std::move(value)); }
+  Key& only(std::vector<std::string> tag_values, const char* advice = "") {
+    return set(&Key::only_for, std::move(tag_values)).otherwise(advice);
+  }
+  Key& otherwise(const char* advice) { return set(&Key::only_advice, advice); }  ///< a KeyTable sets only_for
+  Key& one_of_group(const char* group) { return set(&Key::alternative_group, group); }
+  Key& of_form(Text form) { return set(&Key::text, form); }
+  Key& also_accepted_as(const char* name_too) { return set(&Key::alias, name_too); }
+  Key& also_called(std::vector<std::string> words) { return set(&Key::synonyms, std::move(words)); }
+  Key& unswept(const char* advice = "") { return set(&Key::sweepable, false).set(&Key::no_sweep_advice, advice); }
+  Key& or_list_of_such() { return set(&Key::or_list, true); }
+  Key& unlabelled() { return set(&Key::labelled, false); }
+  Key& on_sobol(int dimension) { return set(&Key::sobol_dimension, dimension); }
+  Key& labelled_if_changed(const char* word = "") {  ///< "word value"
+    return set(&Key::labelled_as_preset, false).set(&Key::label_word, word);
+  }
+  /// Of the whole job: neither swept nor a parameter of tasks.
+  Key& setting() { return set(&Key::sweepable, false).set(&Key::parameter, false); }
 };
 
 Key object_key(const char* name, const char* help, std::vector<Key> keys = {}, const char* tag = "");
@@ -139,7 +154,19 @@ std::string other_unit(const Key& key, double value, double most);
 /// A number as written in a job: 1 instead of 1.0.
 nlohmann::ordered_json number(double value);
 
+std::vector<std::string> names(const std::vector<Key>& keys);
 /// "a", "b", "c"
 std::string quoted_list(const std::vector<std::string>& words);
+
+// The tables of keys that the reader, the schema and the space of a sweep follow. Their rows are in runner/specs.
+
+/// The key of the whole job: an object whose `kind` determines its other keys.
+const Key& job_key();
+
+/// One object key per kind of guess, with its parameters.
+const std::vector<Key>& guess_keys();
+
+/// `label`, allowed in any entry of the list of guesses, beside its parameters or its sweep.
+const Key& guess_label_key();
 
 }  // namespace rodsweep

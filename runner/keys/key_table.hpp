@@ -29,7 +29,7 @@
 #include "runner/inputs/input_file.hpp"
 #include "runner/keys/key.hpp"
 #include "runner/keys/point.hpp"
-#include "runner/text/key_path.hpp"
+#include "runner/text/job_error.hpp"
 #include "runner/text/words.hpp"
 #include "solver/numbers/types.hpp"
 
@@ -63,6 +63,7 @@ class KeyValue {
 inline void read_value(const KeyValue& at, double& value) { value = at.number(); }
 inline void read_value(const KeyValue& at, bool& value) { value = at.number() != 0; }
 inline void read_value(const KeyValue& at, int& value) { value = static_cast<int>(at.number()); }
+inline void read_value(const KeyValue& at, std::int64_t& value) { value = static_cast<std::int64_t>(at.number()); }
 inline void read_value(const KeyValue& at, std::uint64_t& value) { value = static_cast<std::uint64_t>(at.number()); }
 inline void read_value(const KeyValue& at, Vector3& value) { value = Vector3::Map(at.value().number); }
 inline void read_value(const KeyValue& at, std::string& value) { value = at.text(); }
@@ -147,15 +148,18 @@ template <class Owner>
 class KeyTable {
  public:
   /// Adds a key without a member: it is read elsewhere.
-  void unbound(Key key) { keys_.push_back(std::move(key)); }
+  KeyTable& unbound(Key key) {
+    keys_.push_back(std::move(key));
+    return *this;
+  }
 
   template <class... Binding>
-  void required(Key key, const Binding&... binding) {
-    add<false>(std::move(key), binding...);
+  KeyTable& required(Key key, const Binding&... binding) {
+    return add<false>(std::move(key), binding...);
   }
   template <class... Binding>
-  void optional(Key key, const Binding&... binding) {
-    add<true>(std::move(key), binding...);
+  KeyTable& optional(Key key, const Binding&... binding) {
+    return add<true>(std::move(key), binding...);
   }
 
   const std::vector<Key>& keys() const { return keys_; }
@@ -167,22 +171,22 @@ class KeyTable {
 
  private:
   template <bool is_optional, class... Member>
-  void add(Key key, const Member&... member) {
-    bind<is_optional>(
+  KeyTable& add(Key key, const Member&... member) {
+    return bind<is_optional>(
         std::move(key), [](const Key& of, const auto& value) { return written(of, value); },
         [](const KeyValue& at, auto& value) { read_value(at, value); }, member...);
   }
   template <bool is_optional, class Value, class... Member>
-  void add(Key key, const Words<Value>& words, const Member&... member) {
+  KeyTable& add(Key key, const Words<Value>& words, const Member&... member) {
     for (const auto& [word, value] : words) key.choices.emplace_back(word);
-    bind<is_optional>(
+    return bind<is_optional>(
         std::move(key), [&words](const Key&, Value value) { return word_of(words, value); },
         [words](const KeyValue& at, Value& value) { value = value_of(words, at.text()); }, member...);
   }
   template <bool is_optional, class Part, class... Member>
-  void add(Key key, const KeyTable<Part>& part, const Member&... member) {
+  KeyTable& add(Key key, const KeyTable<Part>& part, const Member&... member) {
     key.keys = part.keys();
-    bind<is_optional>(
+    return bind<is_optional>(
         std::move(key), [](const Key& of, const std::optional<Part>& value) { return written(of, value); },
         [part](const KeyValue& at, std::optional<Part>& value) {
           value.reset();
@@ -196,7 +200,7 @@ class KeyTable {
   }
 
   template <bool is_optional, class Write, class Read, class... Member>
-  void bind(Key key, const Write& write, const Read& read, const Member&... member) {
+  KeyTable& bind(Key key, const Write& write, const Read& read, const Member&... member) {
     std::vector<std::string> having;
     bool all = true;
     KindsOf<Owner>::each([&]([[maybe_unused]] auto kind) {
@@ -223,6 +227,7 @@ class KeyTable {
       KindsOf<Owner>::visit(read_if_given, owner);
     });
     keys_.push_back(std::move(key));
+    return *this;
   }
 
   std::vector<Key> keys_;

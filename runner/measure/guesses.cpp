@@ -4,9 +4,7 @@
 
 #include "network/guess/coping_net_guess.hpp"
 #include "network/guess/knn_guess.hpp"
-#include "runner/measure/models.hpp"
-#include "runner/measure/plugin_sources.hpp"
-#include "runner/measure/training_sets.hpp"
+#include "runner/measure/shared_inputs.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/ritz_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"

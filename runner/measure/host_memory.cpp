@@ -9,7 +9,7 @@
 #include <limits>
 #include <sstream>
 
-#include "runner/mpi/control_groups.hpp"
+#include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/formats.hpp"
 
 namespace rodsweep {

@@ -2,22 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <optional>
 #include <utility>
 
 #include "network/guess/factor_preconditioner.hpp"
 #include "runner/measure/guesses.hpp"
-#include "runner/measure/median.hpp"
-#include "runner/measure/models.hpp"
-#include "runner/measure/plugin_sources.hpp"
-#include "runner/measure/solve_rows.hpp"
+#include "runner/measure/shared_inputs.hpp"
 #include "runner/measure/timed_guess.hpp"
 #include "runner/plan/plan.hpp"
 #include "solver/cg/cg_solver.hpp"
 #include "solver/linear/rounding_level.hpp"
 #include "solver/numbers/narrow.hpp"
 #include "solver/plugin/plugin_preconditioner.hpp"
+#include "solver/step/observables.hpp"
 #include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
@@ -349,6 +345,27 @@ void MeasuredSolve::finish() {
   if (!record_.message.empty()) record_.message += "; ";
   record_.message += "the guess \"" + unsteady_ +
                      "\" gave two different answers for the same system: its counts and times are not of one guess";
+}
+
+std::size_t solve_row(const TaskSpec& spec, std::size_t rods, const SolvePosition& at) {
+  const auto newton_iterations = static_cast<std::size_t>(spec.time.newton_iterations);
+  const std::size_t iteration =
+      static_cast<std::size_t>(at.step) * newton_iterations + static_cast<std::size_t>(at.newton);
+  return iteration * rods + static_cast<std::size_t>(at.rod);
+}
+
+void log_position(const SolvePosition& at, std::size_t row, TaskRecord& record) {
+  record.solves.step[row] = at.step;
+  record.solves.newton[row] = static_cast<std::int16_t>(at.newton);
+  record.solves.rod[row] = narrow<std::int16_t>(at.rod);
+}
+
+void log_system(const LinearSystem& system, const Rod& rod, const SolvePosition& at, std::size_t row,
+                TaskRecord& record) {
+  log_position(at, row, record);
+  record.solves.newton_residual[row] = system.newton_residual();
+  record.solves.joint_gap[row] = joint_gap(rod);
+  record.solves.rhs_norm[row] = system.rhs().norm();
 }
 
 }  // namespace rodsweep

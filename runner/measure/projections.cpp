@@ -4,8 +4,8 @@
 
 #include "network/guess/end_to_end.hpp"
 #include "network/guess/state_network.hpp"
-#include "runner/measure/models.hpp"
-#include "runner/measure/solve_rows.hpp"
+#include "runner/measure/measured_solve.hpp"
+#include "runner/measure/shared_inputs.hpp"
 #include "solver/step/xpbd_projection.hpp"
 
 namespace rodsweep {

@@ -5,18 +5,90 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
+#include <limits>
 #include <thread>
 
-#include "runner/mpi/control_groups.hpp"
-
 namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+/// A number; unlimited if it is missing, "max" (version 2) or negative (version 1).
+double next_number(std::istream& in) {
+  double value = 0;
+  return in >> value && value >= 0 ? value : unlimited;
+}
+
+double number_in(const fs::path& path) {
+  std::ifstream file(path);
+  return next_number(file);
+}
+
+double memory_of_version_2(const fs::path& group) { return number_in(group / "memory.max"); }
+double memory_of_version_1(const fs::path& group) { return number_in(group / "memory.limit_in_bytes"); }
+
+double cpus_of_version_2(const fs::path& group) {
+  std::ifstream file(group / "cpu.max");  // QUOTA PERIOD in microseconds
+  const double quota = next_number(file);
+  return quota == unlimited ? unlimited : quota / next_number(file);
+}
+double cpus_of_version_1(const fs::path& group) {
+  const double quota = number_in(group / "cpu.cfs_quota_us");
+  return quota == unlimited ? unlimited : quota / number_in(group / "cpu.cfs_period_us");
+}
+
+using LimitOf = std::function<double(const fs::path& group)>;
+
+/// The least limit of a group and its ancestors.
+double least_above(const fs::path& mount, std::string group, const LimitOf& limit) {
+  double least = unlimited;
+  for (;;) {
+    least = std::min(least, limit(mount / fs::path(group).relative_path()));
+    if (group.empty() || group == "/") return least;
+    group = fs::path(group).parent_path().native();
+  }
+}
+
+double quota(const fs::path& root, const fs::path& proc, const std::string& controller, const LimitOf& version_1,
+             const LimitOf& version_2) {
+  double least = unlimited;
+  std::ifstream groups(proc / "self/cgroup");
+  const fs::path mount = root / "sys/fs/cgroup";
+  for (std::string line; std::getline(groups, line);) {  // NUMBER:CONTROLLERS:GROUP; version 2 has no controllers
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1), group = line.substr(second + 1);
+    if (controllers.empty())
+      least = std::min(least, least_above(mount, group, version_2));
+    else if ((',' + controllers + ',').find(',' + controller + ',') != std::string::npos)
+      least = std::min(least, least_above(mount / controllers, group, version_1));
+  }
+  return least;
+}
+
+}  // namespace
 
 void check_mpi(int code, const char* call) {
   if (code == MPI_SUCCESS) return;
   std::array<char, MPI_MAX_ERROR_STRING> text{};
   int length = 0;
   MPI_Error_string(code, text.data(), &length);
-  throw MpiError(fmt::format("{} failed: {}", call, text.data()));
+  throw MpiError("{} failed: {}", call, text.data());
+}
+
+int rank_in(MPI_Comm comm) {
+  int rank = 0;
+  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
+  return rank;
+}
+
+int ranks_in(MPI_Comm comm) {
+  int size = 1;
+  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
+  return size;
 }
 
 MpiSession::MpiSession() {
@@ -27,8 +99,8 @@ MpiSession::MpiSession() {
   // Communicators derived from these, also those of HDF5 and PETSc, inherit the handler and return their errors.
   check_mpi(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
   check_mpi(MPI_Comm_set_errhandler(MPI_COMM_SELF, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
-  check_mpi(MPI_Comm_rank(MPI_COMM_WORLD, &rank_), "MPI_Comm_rank");
-  check_mpi(MPI_Comm_size(MPI_COMM_WORLD, &size_), "MPI_Comm_size");
+  rank_ = rank_in(MPI_COMM_WORLD);
+  size_ = ranks_in(MPI_COMM_WORLD);
 }
 
 MpiSession::~MpiSession() { MPI_Finalize(); }
@@ -67,8 +139,7 @@ void broadcast(void* data, std::size_t bytes, MPI_Comm comm) {
 
 std::vector<std::string> gather_to_all(const std::string& text, MPI_Comm comm) {
   constexpr std::size_t bytes = 256;
-  int size = 1;
-  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
+  const int size = ranks_in(comm);
   std::string mine = text.substr(0, bytes - 1), all(static_cast<std::size_t>(size) * bytes, '\0');
   mine.resize(bytes);
   check_mpi(MPI_Allgather(mine.data(), bytes, MPI_CHAR, all.data(), bytes, MPI_CHAR, comm), "MPI_Allgather");
@@ -85,9 +156,7 @@ std::vector<std::string> gather_distinct(const std::string& text, MPI_Comm comm)
 }
 
 void collectively(MPI_Comm comm, const std::function<void()>& part) {
-  int rank = 0, size = 1;
-  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
-  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
+  const int rank = rank_in(comm), size = ranks_in(comm);
 
   std::string text;
   int failed = size;
@@ -104,17 +173,14 @@ void collectively(MPI_Comm comm, const std::function<void()>& part) {
 
 void by_rank_0(const std::optional<MPI_Comm>& ranks, const std::function<void()>& part) {
   if (!ranks) return part();
-  int rank = 0;
-  check_mpi(MPI_Comm_rank(*ranks, &rank), "MPI_Comm_rank");
+  const int rank = rank_in(*ranks);
   collectively(*ranks, [&] {
     if (rank == 0) part();
   });
 }
 
 Placement placement(MPI_Comm comm, RankRoles roles) {
-  int rank = 0, size = 1;
-  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
-  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
+  const int rank = rank_in(comm), size = ranks_in(comm);
 
   MPI_Comm host = MPI_COMM_NULL;
   check_mpi(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, rank, MPI_INFO_NULL, &host), "MPI_Comm_split_type");
@@ -127,7 +193,7 @@ Placement placement(MPI_Comm comm, RankRoles roles) {
 
   const int works = size == 1 || rank > 0 || roles == RankRoles::all_work;
   int host_rank = 0, host_workers = 0;
-  check_mpi(MPI_Comm_rank(host, &host_rank), "MPI_Comm_rank");
+  host_rank = rank_in(host);
   check_mpi(MPI_Allreduce(&works, &host_workers, 1, MPI_INT, MPI_SUM, host), "MPI_Allreduce");
   check_mpi(MPI_Comm_free(&host), "MPI_Comm_free");
 
@@ -136,6 +202,14 @@ Placement placement(MPI_Comm comm, RankRoles roles) {
   check_mpi(MPI_Allreduce(part.data(), sum.data(), 3, MPI_INT, MPI_SUM, comm), "MPI_Allreduce");
   const int threads = std::min(CPU_COUNT(&mine), host_cores / std::max(host_workers, 1));
   return {sum[0], sum[1], std::max(threads, 1), std::max(host_workers, 1), sum[2] > 0};
+}
+
+double memory_quota(const fs::path& root, const fs::path& proc) {
+  return quota(root, proc, "memory", memory_of_version_1, memory_of_version_2);
+}
+
+double cpu_quota(const fs::path& root, const fs::path& proc) {
+  return quota(root, proc, "cpu", cpus_of_version_1, cpus_of_version_2);
 }
 
 }  // namespace rodsweep

@@ -7,29 +7,32 @@
 #include <mpi.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "runner/text/formatted_error.hpp"
+
 namespace rodsweep {
 
 /// A failed MPI call: its name and MPI's error text.
-class MpiError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
+struct MpiError : FormattedError<> {
+  using FormattedError::FormattedError;
 };
 
 /// A collective operation failed on at least one rank. what() is the same on every rank.
-class CollectiveError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
+struct CollectiveError : FormattedError<> {
+  using FormattedError::FormattedError;
 };
 
 void check_mpi(int code, const char* call);
+
+int rank_in(MPI_Comm comm);
+int ranks_in(MPI_Comm comm);
 
 class MpiSession {
  public:
@@ -96,5 +99,13 @@ struct Placement {
 };
 enum class RankRoles { all_work, one_is_master };
 Placement placement(MPI_Comm comm, RankRoles roles = RankRoles::one_is_master);
+
+// Limits of this process's control groups (versions 1 and 2) and their ancestors, as Slurm and containers set them;
+// infinity without a limit. Tests replace / and /proc by `root` and `proc`.
+
+double memory_quota(const std::filesystem::path& root = "/", const std::filesystem::path& proc = "/proc");  ///< bytes
+
+/// Processors: the time that the process may compute, over the time that passes.
+double cpu_quota(const std::filesystem::path& root = "/", const std::filesystem::path& proc = "/proc");
 
 }  // namespace rodsweep

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "runner/job/job_difference.hpp"
 #include "runner/keys/sweep_words.hpp"
 #include "runner/specs/guess_keys.hpp"
-#include "runner/text/key_path.hpp"
+#include "runner/text/job_error.hpp"
 
 namespace rodsweep {
 namespace {
@@ -83,11 +82,11 @@ void rename(Json& value, const InputFiles& files, const InputFiles& as) {
 void check_extends(const Job& job, const Job& before) {
   const std::string file = before.path.native();
   const auto refuse = [&](const std::string& path, const std::string& what) {
-    throw job_error(job.path, path,
-                    fmt::format("{}. --extend allows these changes to the job of {} (rodsweep info {} --job): more "
-                                "samples or grid values, or another time limit; to compare other guesses, run this job "
-                                "without --extend, so that one run times them all",
-                                what, file, file));
+    throw job_error(
+        job.path, path,
+        "{}. --extend allows these changes to the job of {} (rodsweep info {} --job): more samples or grid values, or "
+        "another time limit; to compare other guesses, run this job without --extend, so that one run times them all",
+        what, file, file);
   };
   if (job.samples < before.samples) {
     refuse("samples", fmt::format("{} here are fewer than the {} in {}", job.samples, before.samples, file));

@@ -1,11 +1,9 @@
 #include "runner/plan/plan.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "runner/plan/scene_spec.hpp"
 #include "runner/specs/guess_keys.hpp"
+#include "runner/specs/scene_keys.hpp"
 #include "runner/specs/solve_keys.hpp"
 #include "solver/numbers/counter_random.hpp"
 
@@ -23,17 +21,15 @@ std::int64_t product(std::initializer_list<std::int64_t> factors) {
 }
 
 JobError too_large(const Job& job) {
-  return job_error(job.path, "",
-                   fmt::format("this job is too large: more than {} tasks or {} rows", most_tasks, most_rows));
+  return job_error(job.path, "", "this job is too large: more than {} tasks or {} rows", most_tasks, most_rows);
 }
 
 /// The number of parameter points. Throws JobError if too large.
 std::int64_t point_count(const SweepSpace& space, const Job& job) {
   const std::int64_t points = space.grid_points();
   if (static_cast<double>(points) * static_cast<double>(job.samples) <= most_tasks) return points * job.samples;
-  throw job_error(job.path, "",
-                  fmt::format("{} grid points with {} samples each are too many tasks; must be at most {}", points,
-                              job.samples, most_tasks));
+  throw job_error(job.path, "", "{} grid points with {} samples each are too many tasks; must be at most {}", points,
+                  job.samples, most_tasks);
 }
 
 }  // namespace
@@ -150,6 +146,36 @@ TaskSpec Plan::spec(std::int64_t index) const {
   spec.seed = random_bits(job_.seed, static_cast<std::uint64_t>(task.sample), random_stream("guesses"));
   spec.time_limit_s = task_time_limit_s_;
   return spec;
+}
+
+SceneSpec scene_spec(const Point& point, const Job& job) {
+  auto scene = kind_named<SceneSpec>(point.text("scene.type"));
+  scene_keys().fill(scene, {point, job, "scene"});
+  return scene;
+}
+
+void check_scene(const SceneSpec& scene, const Job& job) {
+  const OpenRod* rod = open_rod(scene);
+  if (rod && segment_count(scene) < 2) {
+    throw job_error(
+        job.path, "scene.segments",
+
+        "{} is not allowed with clamp \"{}\": there is no joint; must be at least 2, or 1 with clamp \"wall\"",
+        rod->segments, rod->clamp == Clamp::free ? "free" : "segment");
+  }
+  try {
+    validate(scene);
+  } catch (const SceneError& error) {
+    throw job_error(job.path, "scene", error.what());
+  }
+}
+
+void check_built(const SceneSpec& scene, const Job& job) {
+  try {
+    build_scene(scene);
+  } catch (const SceneError& error) {
+    throw job_error(job.path, "scene", error.what());
+  }
 }
 
 }  // namespace rodsweep

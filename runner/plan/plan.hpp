@@ -6,20 +6,65 @@
 // point.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
 #include "runner/job/job.hpp"
-#include "runner/plan/column_values.hpp"
 #include "runner/plan/task.hpp"
 #include "runner/plan/task_list.hpp"
 #include "runner/specs/task_spec.hpp"
 #include "runner/sweep/sweep_space.hpp"
+#include "solver/scene/scenes.hpp"
 
 namespace rodsweep {
+
+/// The rows of a column, each of `width` values, appended one by one. While all rows are equal, one is stored: of the
+/// parameters of a million tasks, most are constant.
+template <class Value>
+class ColumnValues {
+ public:
+  using value_type = Value;
+
+  explicit ColumnValues(std::size_t width = 1) : width_(width) {}
+
+  void append(const Value* row) {
+    if (rows_++ == 0) {
+      values_.assign(row, row + width_);
+    } else if (values_.size() > width_ || !equal(row, values_.data())) {
+      if (values_.size() == width_) values_ = repeated(rows_ - 1);
+      values_.insert(values_.end(), row, row + width_);
+    }
+  }
+
+  /// All rows, one after another.
+  std::vector<Value> all() const { return values_.size() == width_ ? repeated(rows_) : values_; }
+  /// One row if all rows are equal, else all.
+  const std::vector<Value>& distinct() const { return values_; }
+
+ private:
+  bool equal(const Value* a, const Value* b) const {
+    if constexpr (std::is_arithmetic_v<Value>)
+      return std::memcmp(a, b, width_ * sizeof(Value)) == 0;  // NaN equals NaN
+    else
+      return std::equal(a, a + width_, b);
+  }
+  std::vector<Value> repeated(std::size_t times) const {
+    std::vector<Value> rows;
+    rows.reserve(times * width_);
+    for (std::size_t i = 0; i < times; ++i) rows.insert(rows.end(), values_.begin(), values_.end());
+    return rows;
+  }
+
+  std::size_t width_, rows_ = 0;
+  std::vector<Value> values_;
+};
 
 /// One column of /tasks: the value of a key (number, 3-vector or string) for every task, including defaults. If the key
 /// does not apply to a task (such as a helix key), the value is NaN, -1 or "".
@@ -97,5 +142,15 @@ void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const O
 
 /// The tolerances at which iterations are counted (/axes/tolerance), relative to ||b||.
 const std::vector<double>& tolerance_ladder();  // 1e-1 ... 1e-8
+
+// Constructs the scene from a job's values at one parameter point. Throws JobError.
+
+SceneSpec scene_spec(const Point& point, const Job& job);
+
+/// Throws JobError if a value of the scene is not allowed or if there is nothing to solve for.
+void check_scene(const SceneSpec& scene, const Job& job);
+
+/// Throws JobError if the scene cannot be built, for example because a segment's mass vanishes.
+void check_built(const SceneSpec& scene, const Job& job);
 
 }  // namespace rodsweep

@@ -1,25 +1,86 @@
 // One task of a sweep: its place in the plan and its rows in the file. Its settings are a TaskSpec.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
-
-#include "runner/plan/rows.hpp"
 
 namespace rodsweep {
 
-/// A task's identity and its rows in the file. Sizes are upper bounds, known before the run.
-struct Task {
-  std::int64_t index = 0;  ///< row of /tasks
-  std::int64_t point =
-      0;  ///< parameter point (grid point and sample); closed-loop tasks that differ only in their guess share it
-  std::int64_t sample = 0;  ///< draw of the random parameters, 0 .. samples-1
-  int own_guess = -1;
+// The kinds of rows in a results file, and the columns of /tasks with each task's row ranges.
+// A new kind is added here and in size_rows() (runner/plan/plan.cpp); plan, layout, writing and reading use the array.
+
+/// What a row of a dataset describes.
+enum class Rows {
+  task,
+  contact_task,  ///< as task, in files where any task has contact
+  step,
+  contact_step,   ///< as step, in these files
+  solve,          ///< by step, Newton iteration, rod; none in summaries
+  frame_segment,  ///< by frame, segment
+  segment,        ///< of a trajectory
+  system,         ///< of a data set: by step, stored Newton iteration, rod
+  system_segment,
+  system_joint,
+  balanced_segment  ///< as system_segment, in files where any task balances momentum in its steps
+};
+inline constexpr std::size_t row_kinds = static_cast<std::size_t>(Rows::balanced_segment) + 1;
+
+/// Whether columns of these rows may be missing in a file that has their base kind.
+constexpr bool is_optional(Rows rows) {
+  return rows == Rows::contact_task || rows == Rows::contact_step || rows == Rows::balanced_segment;
+}
+
+/// Rows [first, first + count) of a dataset.
+struct RowRange {
+  std::int64_t first = 0, count = 0;
+};
+
+/// One value per kind of rows.
+template <class T>
+struct PerRows : std::array<T, row_kinds> {
+  using std::array<T, row_kinds>::operator[];
+  constexpr T& operator[](Rows kind) { return (*this)[static_cast<std::size_t>(kind)]; }
+  constexpr const T& operator[](Rows kind) const { return (*this)[static_cast<std::size_t>(kind)]; }
+};
+
+/// The columns of /tasks with a task's first row of a kind and its number of rows.
+struct RowPlace {
+  Rows rows;
+  const char *first, *first_meaning;
+  const char *count, *count_meaning;  ///< null: as many as segments, if the task has frames
+  Rows with;                          ///< only in files that have rows of this kind
+};
+inline constexpr std::array<RowPlace, 7> row_places{{
+    {Rows::step, "/tasks/first_step", "first row in /steps", "/tasks/steps", "rows in /steps", Rows::task},
+    {Rows::solve, "/tasks/first_solve", "first row in /solves", "/tasks/solves", "rows in /solves", Rows::task},
+    {Rows::frame_segment, "/tasks/first_frame_row", "first row in /trajectories", "/tasks/frames",
+     "frames in /trajectories, each of `segments` rows", Rows::task},
+    {Rows::segment, "/tasks/first_segment_row", "first row in /trajectories/segments", nullptr, nullptr, Rows::segment},
+    {Rows::system, "/tasks/first_system", "first row in /systems", "/tasks/systems", "rows in /systems", Rows::system},
+    {Rows::system_segment, "/tasks/first_system_segment", "first row in /systems/segments", "/tasks/system_segments",
+     "rows in /systems/segments, system by system", Rows::system},
+    {Rows::system_joint, "/tasks/first_system_joint", "first row in /systems/joints", "/tasks/system_joints",
+     "rows in /systems/joints, system by system", Rows::system},
+}};
+
+/// What determines the numbers of a task's rows and its cost. Sizes are upper bounds, known before the run.
+struct TaskSize {
   int segments = 0;  ///< dynamic and static (graph nodes)
   int joints = 0;
   std::int64_t steps = 0;
   std::int64_t frames = 0;  ///< of the trajectory
-  PerRows<RowRange> rows;
   double cost = 0;  ///< relative: segments x steps x newton_iterations; tasks are dispatched in descending order
+};
+
+/// A task's identity, size and rows in the file.
+struct Task : TaskSize {
+  std::int64_t index = 0;  ///< row of /tasks
+  /// Parameter point (grid point and sample); closed-loop tasks that differ only in their guess share it.
+  std::int64_t point = 0;
+  std::int64_t sample = 0;  ///< draw of the random parameters, 0 .. samples-1
+  int own_guess = -1;
+  PerRows<RowRange> rows;
 };
 
 }  // namespace rodsweep

@@ -5,7 +5,7 @@
 namespace rodsweep {
 
 void TaskList::add(const Task& task) {
-  Shape shape{task.segments, task.joints, task.steps, task.frames, task.cost, {}};
+  Shape shape{task, {}};
   std::array<double, 5 + row_kinds> content{static_cast<double>(task.segments), static_cast<double>(task.joints),
                                             static_cast<double>(task.steps), static_cast<double>(task.frames),
                                             task.cost};
@@ -15,7 +15,7 @@ void TaskList::add(const Task& task) {
   }
   const auto [known, is_new] = by_content_.try_emplace(content, static_cast<std::uint32_t>(shapes_.size()));
   if (is_new) shapes_.push_back(shape);
-  places_.push_back(
+  entries_.push_back(
       {static_cast<std::int32_t>(task.point), static_cast<std::int32_t>(task.sample), task.own_guess, known->second});
   mark(size() - 1);
 }
@@ -37,10 +37,10 @@ PerRows<std::int64_t> TaskList::first_rows(std::int64_t index) const {
   return first;
 }
 
-double TaskList::cost(std::int64_t index) const { return shape(index).cost; }
+double TaskList::cost(std::int64_t index) const { return shape(index).size.cost; }
 
 const TaskList::Shape& TaskList::shape(std::int64_t index) const {
-  return shapes_[places_.at(static_cast<std::size_t>(index)).shape];
+  return shapes_[entries_.at(static_cast<std::size_t>(index)).shape];
 }
 
 void TaskList::mark(std::int64_t index) {
@@ -54,18 +54,9 @@ void TaskList::pass(std::int64_t index, PerRows<std::int64_t>& first) const {
 }
 
 Task TaskList::task(std::int64_t index, const PerRows<std::int64_t>& first) const {
-  const Place& place = places_[static_cast<std::size_t>(index)];
-  const Shape& shape = shapes_[place.shape];
-  Task task;
-  task.index = index;
-  task.point = place.point;
-  task.sample = place.sample;
-  task.own_guess = place.own_guess;
-  task.segments = shape.segments;
-  task.joints = shape.joints;
-  task.steps = shape.steps;
-  task.frames = shape.frames;
-  task.cost = shape.cost;
+  const Entry& entry = entries_[static_cast<std::size_t>(index)];
+  const Shape& shape = shapes_[entry.shape];
+  Task task{shape.size, index, entry.point, entry.sample, entry.own_guess, {}};
   for (std::size_t kind = 0; kind < row_kinds; ++kind) task.rows[kind] = {first[kind], shape.rows[kind]};
   return task;
 }

@@ -23,7 +23,7 @@ class TaskList {
   /// Removes the rows of this kind from all tasks.
   void drop(Rows kind);
 
-  std::int64_t size() const { return static_cast<std::int64_t>(places_.size()); }
+  std::int64_t size() const { return static_cast<std::int64_t>(entries_.size()); }
   const PerRows<std::int64_t>& rows() const { return rows_; }  ///< of all tasks together
 
   /// Both throw std::out_of_range.
@@ -37,12 +37,10 @@ class TaskList {
 
  private:
   struct Shape {
-    int segments, joints;
-    std::int64_t steps, frames;
-    double cost;
+    TaskSize size;
     PerRows<std::int64_t> rows;
   };
-  struct Place {
+  struct Entry {
     std::int32_t point, sample, own_guess;
     std::uint32_t shape;
   };
@@ -54,7 +52,7 @@ class TaskList {
   PerRows<std::int64_t> first_rows(std::int64_t index) const;
   Task task(std::int64_t index, const PerRows<std::int64_t>& first) const;
 
-  std::vector<Place> places_;
+  std::vector<Entry> entries_;
   std::vector<Shape> shapes_;
   std::map<std::array<double, 5 + row_kinds>, std::uint32_t> by_content_;  ///< indices of shapes
   std::vector<PerRows<std::int64_t>> marks_;                               ///< first rows of each mark_every-th task

@@ -1,37 +1,29 @@
 #include "runner/plan/task_outcome.hpp"
 
-namespace rodsweep {
+#include <algorithm>
+#include <array>
 
-const char* to_string(TaskOutcome outcome) {
-  switch (outcome) {
-    case TaskOutcome::pending: return "pending";
-    case TaskOutcome::ok: return "ok";
-    case TaskOutcome::diverged: return "diverged";
-    case TaskOutcome::not_a_number: return "not_a_number";
-    case TaskOutcome::indefinite: return "indefinite";
-    case TaskOutcome::iteration_limit: return "iteration_limit";
-    case TaskOutcome::timed_out: return "timed_out";
-    case TaskOutcome::error: return "error";
-    case TaskOutcome::torn: return "torn";
-    case TaskOutcome::crashed: return "crashed";
-  }
-  return "unknown";
-}
+namespace rodsweep {
+namespace {
+
+/// By value.
+constexpr std::array<const char*, task_outcomes> outcome_names{
+    "pending",         "ok",        "diverged", "not_a_number", "indefinite",
+    "iteration_limit", "timed_out", "error",    "torn",         "crashed"};
+
+}  // namespace
+
+const char* to_string(TaskOutcome outcome) { return outcome_names.at(static_cast<std::size_t>(outcome)); }
 
 std::optional<TaskOutcome> outcome_called(const std::string& name) {
-  for (int i = 0; i < task_outcomes; ++i)
-    if (name == to_string(static_cast<TaskOutcome>(i))) return static_cast<TaskOutcome>(i);
-  return std::nullopt;
+  const auto found = std::find(outcome_names.begin(), outcome_names.end(), name);
+  if (found == outcome_names.end()) return std::nullopt;
+  return static_cast<TaskOutcome>(found - outcome_names.begin());
 }
 
 bool may_change(TaskOutcome outcome) {
-  switch (outcome) {
-    case TaskOutcome::pending:
-    case TaskOutcome::timed_out:
-    case TaskOutcome::error:
-    case TaskOutcome::crashed: return true;
-    default: return false;
-  }
+  return outcome == TaskOutcome::pending || outcome == TaskOutcome::timed_out || outcome == TaskOutcome::error ||
+         outcome == TaskOutcome::crashed;
 }
 
 }  // namespace rodsweep

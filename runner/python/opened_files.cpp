@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-#include "runner/python/surroundings.hpp"
+#include "runner/python/interpreter.hpp"
 
 namespace rodsweep {
 namespace {
@@ -119,8 +119,8 @@ void warn_of_unnamed(const std::string& module, const std::vector<std::string>& 
   }
   if (!unnamed.empty())
     warn(fs::path(module).filename().native() + " opened " + listed(unnamed, "") +
-         ", which the job does not name: results of changed contents would be mixed with old ones. Write "
-         "beside \"file\", with paths from the job's folder: \"inputs\": [" +
+         ", which the job does not name: results of changed contents would be mixed with old ones. Write beside "
+         "\"file\", with paths from the job's folder: \"inputs\": [" +
          listed(needed, "\"") + "]");
 }
 

@@ -4,20 +4,12 @@
 // Its options are parts, each on a line but the last: the class, Guess or Preconditioner; the file that has it; the
 // number of other files that it reads, and their paths; the text of the job. Python receives copies, since it may keep
 // them longer than their memory exists. The arrays have the names and shapes of rodsweep.systems().
-#include <dlfcn.h>
-#include <omp.h>
-#include <pthread.h>
 #include <pybind11/embed.h>
 #include <pybind11/numpy.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
@@ -26,8 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "runner/python/interpreter.hpp"
 #include "runner/python/opened_files.hpp"
-#include "runner/python/surroundings.hpp"
 #include "solver/plugin/plugin.h"
 
 namespace py = pybind11;
@@ -113,88 +105,6 @@ PYBIND11_EMBEDDED_MODULE(rodsweep_system, module) {
       .def_property_readonly("orientation", &System::orientation);
 }
 
-// A call whose result is no longer wanted is ended as Ctrl-C ends a program of Python: by a signal to the interpreter's
-// thread, which also ends sleeping and waiting. By default this signal does nothing.
-constexpr int interrupting = SIGURG;
-std::atomic<bool> unwanted{false};  ///< the call in progress
-const pthread_t thread_of_python = pthread_self();
-PyObject* interrupted = nullptr;  ///< the exception's class; `except Exception` does not catch it
-
-void install_interruption() {
-  interrupted = PyErr_NewException("rodsweep_system.Interrupted", PyExc_BaseException, nullptr);
-  if (!interrupted) throw py::error_already_set();
-  const auto handler = [](const py::args&) {
-    if (!unwanted) return;  // of an earlier call
-    PyErr_SetString(interrupted, "the result is no longer wanted");
-    throw py::error_already_set();
-  };
-  py::module_::import("signal").attr("signal")(interrupting, py::cpp_function(handler));
-}
-
-/// User's code may change the folder. It finds itself there again in its next call; the program stays in its own.
-class Visit {
- public:
-  /// `folder`: where the code is, "" in the program's folder.
-  explicit Visit(std::string& folder) : folder_(folder) {
-    if (!folder_.empty()) go(folder_);
-    left = false;
-  }
-  ~Visit() {
-    std::error_code error;
-    if (left) folder_ = std::filesystem::current_path(error).native();
-    if (!folder_.empty()) go(home);
-  }
-  Visit(const Visit&) = delete;
-  Visit& operator=(const Visit&) = delete;
-
-  static void begin() {
-    home = std::filesystem::current_path().native();
-    PySys_AddAuditHook(notice, nullptr);
-  }
-
- private:
-  static int notice(const char* event, PyObject*, void*) {
-    if (std::strcmp(event, "os.chdir") == 0) left = true;
-    return 0;
-  }
-  static void go(const std::string& folder) { [[maybe_unused]] const int failed = chdir(folder.c_str()); }
-
-  static inline std::string home;
-  static inline bool left = false;
-  std::string& folder_;
-};
-
-/// Starts the interpreter, once in a process.
-void start_python() {
-  if (Py_IsInitialized()) return;
-  // numpy's libraries look for Python's symbols among all, but the program has loaded this one privately.
-  if (Dl_info info; dladdr(reinterpret_cast<void*>(&Py_IsInitialized), &info))
-    dlopen(info.dli_fname, RTLD_NOW | RTLD_GLOBAL | RTLD_NOLOAD);
-  // Workers share the cores.
-  if (!std::getenv("OMP_NUM_THREADS")) {
-    setenv("OMP_NUM_THREADS", "1", 0);
-    omp_set_num_threads(1);
-  }
-  PyConfig config;
-  PyConfig_InitPythonConfig(&config);
-  config.install_signal_handlers = 0;  // the program has its own
-  config.write_bytecode = 0;           // nothing beside the user's files
-  // sys.executable, which multiprocessing starts: not the first python3 of the PATH, which may be of another version.
-  const char* environment = std::getenv("VIRTUAL_ENV");
-  if (environment) rodsweep::check_environment(environment);
-  const std::string python = environment ? std::string(environment) + "/bin/python" : RODSWEEP_PYTHON;
-  PyConfig_SetBytesString(&config, &config.program_name, python.c_str());
-  rodsweep::watch_opened_files();
-  Visit::begin();
-  py::initialize_interpreter(&config, 0, nullptr, false);
-  py::module_::import("rodsweep_system");
-  install_interruption();
-  py::module_::import("numpy");  // arrays need it: not in the time of the first task
-  py::module_ sys = py::module_::import("sys");
-  sys.attr("stdout") = sys.attr("stderr");  // standard output has the program's results
-  PyEval_SaveThread();
-}
-
 /// "ValueError: TEXT (my_guess.py:12 in propose)"; of a call that was interrupted only the place
 std::string text_of(const py::error_already_set& error) {
   const auto text = [](const py::handle& object) -> std::string {
@@ -212,7 +122,7 @@ std::string text_of(const py::error_already_set& error) {
       places += (places.empty() ? "" : ", ") + file.substr(file.rfind('/') + 1) + ':' + text(frame.attr("lineno")) +
                 " in " + text(frame.attr("name"));
     }
-  if (error.matches(interrupted)) return places;
+  if (error.matches(rodsweep::interrupted())) return places;
   const std::string what = text(error.type().attr("__name__")) + ": " + text(error.value());
   return places.empty() ? what : what + " (" + places + ')';
 }
@@ -230,7 +140,7 @@ void write(std::string text, char* error) {
 /// What `call` returns, or `failed` with the text of its exception.
 template <class Result, class Call>
 Result guarded(Result failed, char* error, const Call& call) {
-  unwanted = false;
+  rodsweep::begin_call();
   py::gil_scoped_acquire lock;
   try {
     return call();
@@ -299,7 +209,7 @@ struct Instance {
   py::object within(const Call& call) {
     py::object returned;
     {
-      const Visit visit(folder);
+      const rodsweep::Visit visit(folder);
       const rodsweep::Watching watching(file);
       returned = call();
     }
@@ -331,7 +241,7 @@ const Loaded& loaded(const std::string& path) {
   Loaded made{util.attr("module_from_spec")(spec), ""};
   py::module_::import("sys").attr("modules")[name.c_str()] = made.module;
   {
-    const Visit visit(made.folder);
+    const rodsweep::Visit visit(made.folder);
     const rodsweep::Watching watching(path);
     spec.attr("loader").attr("exec_module")(made.module);
   }
@@ -351,7 +261,7 @@ void* create(const char* options, const rodsweep_rod* rods, int count, char* err
   std::vector<std::string> inputs(std::stoul(next_line()));
   for (std::string& input : inputs) input = next_line();
   try {
-    start_python();
+    rodsweep::start_python();
   } catch (const std::exception& raised) {
     write(raised.what(), error);
     return nullptr;
@@ -438,7 +348,4 @@ const rodsweep_plugin_functions* rodsweep_plugin() {
   return &functions;
 }
 
-void rodsweep_plugin_interrupt() {
-  unwanted = true;
-  pthread_kill(thread_of_python, interrupting);
-}
+void rodsweep_plugin_interrupt() { rodsweep::interrupt_call(); }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <stdexcept>
-#include <utility>
 
 #include "runner/keys/key_table.hpp"
 #include "runner/keys/sweep_words.hpp"
@@ -23,107 +22,96 @@ namespace {
 /// The keys of Fischer, Subspace and Deflation.
 template <class Guess>
 KeyTable<Guess> subspace_keys() {
-  KeyTable<Guess> table;
-  table.optional(
+  return KeyTable<Guess>().optional(
       integer_key("size", "maximum dimension of the subspace; each dimension costs a product with A").from(1, 200),
       &Guess::size);
-  return table;
 }
 
 KeyTable<guess::Regression> regression_keys() {
-  KeyTable<guess::Regression> table;
-  table.optional(integer_key("size", "maximum number of systems in the regression").from(1, 200),
-                 &guess::Regression::size);
-  return table;
+  return KeyTable<guess::Regression>().optional(
+      integer_key("size", "maximum number of systems in the regression").from(1, 200), &guess::Regression::size);
 }
 
 KeyTable<guess::CopingNet> copingnet_keys() {
   using guess::CopingNet;
-  KeyTable<CopingNet> table;
-  table.required(file_key("model", FileKind::model, "model file of a train job"), &CopingNet::model);
-  table.optional(
-      integer_key("corrections",
-                  "models with factors: number of successive corrections; each after the first costs a product with A")
-          .from(1, 100)
-          .labelled_if_changed(),
-      &CopingNet::corrections);
-  table.optional(
-      integer_key("lag_steps",
-                  "models with factors: number of time steps that use the same predicted factors; 0: one solve")
-          .from(0, 1000000)
-          .labelled_if_changed("lag"),
-      &CopingNet::lag_steps);
-  table.optional(number_key("stop_at", "models with factors: corrections stop at this residual, relative to ||b||")
-                     .from(0, 1)
-                     .labelled_if_changed("to"),
-                 &CopingNet::stop_at);
-  return table;
+  return KeyTable<CopingNet>()
+      .required(file_key("model", FileKind::model, "model file of a train job"), &CopingNet::model)
+      .optional(
+          integer_key(
+              "corrections",
+              "models with factors: number of successive corrections; each after the first costs a product with A")
+              .from(1, 100)
+              .labelled_if_changed(),
+          &CopingNet::corrections)
+      .optional(
+          integer_key("lag_steps",
+                      "models with factors: number of time steps that use the same predicted factors; 0: one solve")
+              .from(0, 1000000)
+              .labelled_if_changed("lag"),
+          &CopingNet::lag_steps)
+      .optional(number_key("stop_at", "models with factors: corrections stop at this residual, relative to ||b||")
+                    .from(0, 1)
+                    .labelled_if_changed("to"),
+                &CopingNet::stop_at);
 }
 
 KeyTable<guess::Knn> knn_keys() {
   using guess::Knn;
-  KeyTable<Knn> table;
-  table.optional(integer_key("k", "number of neighbours").from(1, 1000).also_called({"neighbours"}), &Knn::neighbours);
-  table.required(file_key("data", FileKind::data_set, "data set: the file of a job of kind \"dataset\"").unlabelled(),
-                 &Knn::data);
-  table.optional(integer_key("simulations", "number of simulations of the data set to use, from the first; 0: all")
-                     .from(0, 1000000)
-                     .unlabelled(),
-                 &Knn::simulations);
-  table.optional(choice_key("inputs",
-                            "features that define similarity. all: shape, joint gaps and velocities; shape: the inputs "
-                            "of the paper's network")
-                     .labelled_if_changed(""),
-                 Words<KnnInputs>{{"all", KnnInputs::all}, {"shape", KnnInputs::shape}}, &Knn::inputs);
-  return table;
+  return KeyTable<Knn>()
+      .optional(integer_key("k", "number of neighbours").from(1, 1000).also_called({"neighbours"}), &Knn::neighbours)
+      .required(file_key("data", FileKind::data_set, "data set: the file of a job of kind \"dataset\"").unlabelled(),
+                &Knn::data)
+      .optional(integer_key("simulations", "number of simulations of the data set to use, from the first; 0: all")
+                    .from(0, 1000000)
+                    .unlabelled(),
+                &Knn::simulations)
+      .optional(choice_key("inputs",
+                           "features that define similarity. all: shape, joint gaps and velocities; shape: the inputs "
+                           "of the paper's network")
+                    .labelled_if_changed(""),
+                Words<KnnInputs>{{"all", KnnInputs::all}, {"shape", KnnInputs::shape}}, &Knn::inputs);
 }
 
 KeyTable<guess::Oracle> oracle_keys() {
   using guess::Oracle;
   using Error = OracleGuess::Error;
-  KeyTable<Oracle> table;
-  table.optional(number_key("error", "A-norm of the error, relative to that of the solution").from(0, 1e6),
-                 &Oracle::error);
-  table.optional(choice_key("errors", "white: independent in every entry; smooth: in the modes that CG finds last"),
-                 Words<Error>{{"white", Error::white}, {"smooth", Error::smooth}}, &Oracle::kind);
-  return table;
+  return KeyTable<Oracle>()
+      .optional(number_key("error", "A-norm of the error, relative to that of the solution").from(0, 1e6),
+                &Oracle::error)
+      .optional(choice_key("errors", "white: independent in every entry; smooth: in the modes that CG finds last"),
+                Words<Error>{{"white", Error::white}, {"smooth", Error::smooth}}, &Oracle::kind);
 }
 
 KeyTable<guess::Guarded> guarded_keys() {
   using guess::Guarded;
-  KeyTable<Guarded> table;
-  table.required(guess_key("guess", "the guarded guess"), &Guarded::guess);
-  table.required(
-      number_key("threshold", "the guess is used if the natural norm of b - A x0 is below this times that of b")
-          .above(0)
-          .at_most(1e6),
-      &Guarded::threshold);
-  return table;
+  return KeyTable<Guarded>()
+      .required(guess_key("guess", "the guarded guess"), &Guarded::guess)
+      .required(
+          number_key("threshold", "the guess is used if the natural norm of b - A x0 is below this times that of b")
+              .positive(1e6),
+          &Guarded::threshold);
 }
 
 /// The keys of Totals and First.
 template <class Guess>
 KeyTable<Guess> keys_of_another(const char* help) {
-  KeyTable<Guess> table;
-  table.required(guess_key("guess", help), &Guess::guess);
-  return table;
+  return KeyTable<Guess>().required(guess_key("guess", help), &Guess::guess);
 }
 
 KeyTable<guess::Ritz> ritz_keys() {
   using guess::Ritz;
-  KeyTable<Ritz> table;
-  table.required(guess_key("guess", "the guess to which the part in the span of the Ritz vectors is added"),
-                 &Ritz::guess);
-  table.optional(integer_key("size", "number of Ritz vectors; each costs a product with A").from(1, 200), &Ritz::size);
-  table.optional(integer_key("collected", "residuals of a solve that the next Ritz vectors are combined from")
-                     .from(1, 200)
-                     .labelled_if_changed(),
-                 &Ritz::collected);
-  table.optional(integer_key("lag_steps", "time steps that use the same Ritz vectors; 0: one solve")
-                     .from(0, 1000000)
-                     .labelled_if_changed("lag"),
-                 &Ritz::lag_steps);
-  return table;
+  return KeyTable<Ritz>()
+      .required(guess_key("guess", "the guess to which the part in the span of the Ritz vectors is added"),
+                &Ritz::guess)
+      .optional(integer_key("size", "number of Ritz vectors; each costs a product with A").from(1, 200), &Ritz::size)
+      .optional(integer_key("collected", "residuals of a solve that the next Ritz vectors are combined from")
+                    .from(1, 200)
+                    .labelled_if_changed(),
+                &Ritz::collected)
+      .optional(integer_key("lag_steps", "time steps that use the same Ritz vectors; 0: one solve")
+                    .from(0, 1000000)
+                    .labelled_if_changed("lag"),
+                &Ritz::lag_steps);
 }
 
 /// A kind of guess: its key with its parameters' keys, and how these are read.
@@ -156,10 +144,9 @@ const std::vector<Kind>& kinds() {
       kind<guess::Deflation>(
           "as subspace; CG also projects the last `size` solutions out of all residuals (deflated CG)",
           subspace_keys<guess::Deflation>()),
-      kind<guess::Regression>(
-          "combination of the last `size` solutions, with the coefficients that fit their right-hand "
-          "sides to b: no product with A",
-          regression_keys()),
+      kind<guess::Regression>("combination of the last `size` solutions, with the coefficients that fit their "
+                              "right-hand sides to b: no product with A",
+                              regression_keys()),
       kind<guess::CopingNet>("learned guess: a network corrects the base guess that it was trained with",
                              copingnet_keys()),
       kind<guess::Knn>("the solutions of the most similar systems of a data set, resampled by arc length and averaged",
@@ -168,18 +155,15 @@ const std::vector<Kind>& kinds() {
       kind<guess::Python>("a guess from a Python file of yours", python_keys<guess::Python>(FileKind::python_guess)),
       kind<guess::Oracle>("the exact solution plus a random error", oracle_keys()),
       kind<guess::Guarded>("another guess, used only if its residual is small", guarded_keys()),
-      kind<guess::Totals>(
-          "another guess; its history of first Newton iterations holds the sum of a step's increments (for "
-          "closed loops)",
-          keys_of_another<guess::Totals>("the guess that uses these sums")),
-      kind<guess::First>(
-          "another guess at the first Newton iteration of a step, zero at the others: for networks trained "
-          "only on first iterations",
-          keys_of_another<guess::First>("the guess for first Newton iterations")),
-      kind<guess::Ritz>(
-          "another guess; CG also projects the approximate eigenvectors that it would find last, recycled from earlier "
-          "solves, out of all residuals (deflated CG)",
-          ritz_keys()),
+      kind<guess::Totals>("another guess; its history of first Newton iterations holds the sum of a step's increments "
+                          "(for closed loops)",
+                          keys_of_another<guess::Totals>("the guess that uses these sums")),
+      kind<guess::First>("another guess at the first Newton iteration of a step, zero at the others: for networks "
+                         "trained only on first iterations",
+                         keys_of_another<guess::First>("the guess for first Newton iterations")),
+      kind<guess::Ritz>("another guess; CG also projects the approximate eigenvectors that it would find last, "
+                        "recycled from earlier solves, out of all residuals (deflated CG)",
+                        ritz_keys()),
   };
   return kinds;
 }

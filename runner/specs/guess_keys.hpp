@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "runner/inputs/input_file.hpp"
+#include "runner/keys/key.hpp"
 #include "runner/keys/point.hpp"
-#include "runner/keys/tables.hpp"
 #include "runner/specs/guess_spec.hpp"
 
 namespace rodsweep {

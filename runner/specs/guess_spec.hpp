@@ -8,12 +8,25 @@
 #include <string>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 #include "network/guess/knn.hpp"
-#include "runner/specs/plugin_file.hpp"
 #include "solver/guess/initial_guess.hpp"
 
 namespace rodsweep {
+
+/// A guess or a preconditioner of the user's in a job: a shared library (solver/plugin/plugin.h) or a file of Python
+/// (runner/python/python_plugin.cpp).
+struct PluginFile {
+  std::filesystem::path library;
+  std::string options;
+};
+
+struct PythonFile {
+  std::filesystem::path file;
+  std::string options;
+  std::vector<std::filesystem::path> inputs{};  ///< other files that it reads
+};
 
 struct GuessSpec;
 

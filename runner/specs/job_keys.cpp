@@ -1,4 +1,4 @@
-#include "runner/keys/tables.hpp"
+#include "runner/keys/key.hpp"
 
 #include "runner/specs/scene_keys.hpp"
 #include "runner/specs/solve_keys.hpp"

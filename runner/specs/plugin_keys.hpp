@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runner/keys/key_table.hpp"
-#include "runner/specs/plugin_file.hpp"
+#include "runner/specs/guess_spec.hpp"
 
 namespace rodsweep {
 
@@ -18,23 +18,21 @@ inline Key inputs_key() {
 
 template <class Owner>
 KeyTable<Owner> plugin_keys() {
-  KeyTable<Owner> table;
-  table.required(
-      file_key("library", FileKind::plugin, "shared library that exports rodsweep_plugin() (docs/extending.md)"),
-      &Owner::library);
-  table.optional(text_key("options", "text that the library receives").at_most(1000), &Owner::options);
-  table.unbound(inputs_key());
-  return table;
+  return KeyTable<Owner>()
+      .required(
+          file_key("library", FileKind::plugin, "shared library that exports rodsweep_plugin() (docs/extending.md)"),
+          &Owner::library)
+      .optional(text_key("options", "text that the library receives").at_most(1000), &Owner::options)
+      .unbound(inputs_key());
 }
 
 template <class Owner>
 KeyTable<Owner> python_keys(FileKind kind) {
-  KeyTable<Owner> table;
-  table.required(file_key("file", kind, "Python file with a class Guess or Preconditioner (docs/own-guess.md)"),
-                 &Owner::file);
-  table.optional(text_key("options", "text that the class receives").at_most(1000), &Owner::options);
-  table.optional(inputs_key(), &Owner::inputs);
-  return table;
+  return KeyTable<Owner>()
+      .required(file_key("file", kind, "Python file with a class Guess or Preconditioner (docs/own-guess.md)"),
+                &Owner::file)
+      .optional(text_key("options", "text that the class receives").at_most(1000), &Owner::options)
+      .optional(inputs_key(), &Owner::inputs);
 }
 
 }  // namespace rodsweep

@@ -2,7 +2,6 @@
 
 #include "runner/inputs/curve_file.hpp"
 #include "runner/inputs/skeleton_file.hpp"
-#include "runner/specs/scene_part_keys.hpp"
 #include "runner/text/job_error.hpp"
 
 namespace rodsweep {
@@ -50,7 +49,7 @@ struct OwnRadius {
   void operator()(SkeletonTree&) const = delete;
 };
 
-Key length_key(const char* name, const char* help) { return number_key(name, help).in("m").above(0).at_most(1e6); }
+Key length_key(const char* name, const char* help) { return number_key(name, help).in("m").positive(1e6); }
 Key angle_key(const char* name, const char* help, double least, double most) {
   return number_key(name, help).in("deg").from(least, most);
 }
@@ -61,13 +60,12 @@ void add_shapes(Table& table) {
           .otherwise("use \"held\" for nets and lattices; trees are fixed to the ground"),
       Words<Clamp>{{"segment", Clamp::segment}, {"wall", Clamp::wall}, {"free", Clamp::free}}, &OpenRod::clamp,
       &Ring::clamp);
-  table.optional(
-      choice_key(
-          "held",
-          "what is held. Nets: the crossings of the first rod along x (side), the four corners, or nothing; lattices: "
-          "the nodes with the least x (side), the eight corners, or nothing")
-          .otherwise("use \"clamp\" for the end of a rod"),
-      Words<Held>{{"side", Held::side}, {"corners", Held::corners}, {"free", Held::free}}, &Net::held, &Lattice::held);
+  table.optional(choice_key("held",
+                            "what is held. Nets: the crossings of the first rod along x (side), the four corners, or "
+                            "nothing; lattices: the nodes with the least x (side), the eight corners, or nothing")
+                     .otherwise("use \"clamp\" for the end of a rod"),
+                 Words<Held>{{"side", Held::side}, {"corners", Held::corners}, {"free", Held::free}}, &Net::held,
+                 &Lattice::held);
   table.required(integer_key("segments",
                              "segments per rod, without a wall's static one; in nets and lattices from one crossing to "
                              "the next; in trees of the trunk and of each branch")
@@ -105,22 +103,20 @@ void add_shapes(Table& table) {
                  &Lattice::nodes_z);
   table.optional(number_key("node_stiffness",
                             "stiffness of the joints at lattice nodes, relative to a piece of rod two radii long")
-                     .above(0)
-                     .at_most(1e9),
+                     .positive(1e9),
                  &Lattice::node_stiffness);
   table.required(length_key("helix_radius_m", "radius of the helix").plausibly(1e-5, 1e2).on_sobol(4),
                  &Helix::helix_radius_m);
   table.required(length_key("helix_height_m", "height of the helix").plausibly(1e-5, 1e3).on_sobol(5),
                  &Helix::helix_height_m);
-  table.required(number_key("windings", "turns of the helix").above(0).at_most(1e6).also_called({"turns"}).on_sobol(6),
+  table.required(number_key("windings", "turns of the helix").positive(1e6).also_called({"turns"}).on_sobol(6),
                  &Helix::windings);
 }
 
 void add_rods(Table& table) {
   table.required(number_key("radius_m", "radius of the rod, or of a tree's trunk at the ground")
                      .in("m")
-                     .above(0)
-                     .at_most(1e3)
+                     .positive(1e3)
                      .plausibly(1e-6, 10)
                      .on_sobol(8)
                      .otherwise("a skeleton has its own radii"),
@@ -131,24 +127,21 @@ void add_rods(Table& table) {
       section_keys(), OwnSection());
   table.required(number_key("density_kg_m3", "density")
                      .in("kg/m^3")
-                     .above(0)
-                     .at_most(1e6)
+                     .positive(1e6)
                      .plausibly(10, 25000, "water has 1000, steel 7850")
                      .also_called({"rho"})
                      .on_sobol(10),
                  &Rods::density_kg_m3);
   table.required(number_key("youngs_modulus_pa", "Young's modulus, for bending")
                      .in("Pa")
-                     .above(0)
-                     .at_most(1e15)
+                     .positive(1e15)
                      .plausibly(1e3, 2e12, "rubber has 1e6 to 1e8, steel 2e11")
                      .also_called({"bending_modulus_pa", "elastic_modulus_pa", "e", "y"})
                      .on_sobol(0),
                  &Rods::youngs_modulus_pa);
   table.required(number_key("torsion_modulus_pa", "torsion modulus, for twisting and shear")
                      .in("Pa")
-                     .above(0)
-                     .at_most(1e15)
+                     .positive(1e15)
                      .plausibly(1e3, 2e12, "rubber has 3e5 to 3e7, steel 8e10")
                      .also_accepted_as("shear_modulus_pa")
                      .also_called({"g", "t"})
@@ -202,10 +195,10 @@ void add_trees(Table& table) {
   table.required(integer_key("depth", "levels of branching of a tree").from(0, 100), shape(&Shape::depth));
   table.required(integer_key("branches", "new branches at the end of each branch").from(1, 100),
                  shape(&Shape::branches));
-  table.optional(number_key("length_ratio", "length of a branch over that of its parent").above(0).at_most(10),
+  table.optional(number_key("length_ratio", "length of a branch over that of its parent").positive(10),
                  shape(&Shape::length_ratio));
   table.optional(
-      number_key("taper", "end radius of a branch over its start radius; 1: only the pipe model").above(0).at_most(1),
+      number_key("taper", "end radius of a branch over its start radius; 1: only the pipe model").positive(1),
       shape(&Shape::taper));
   table.optional(
       number_key("pipe_exponent", "e of the pipe model r^e = r_1^e + r_2^e + ... at every branching of a tree")

@@ -1,4 +1,4 @@
-#include "runner/specs/scene_part_keys.hpp"
+#include "runner/specs/scene_keys.hpp"
 
 #include <string>
 #include <tuple>
@@ -15,31 +15,28 @@ struct SolidKind {
 
 Key place(const char* name, const char* help) { return vector_key(name, help).in("m").from(-1e6, 1e6); }
 Key velocity() { return vector_key("velocity_m_s", "constant velocity").in("m/s").from(-1e6, 1e6); }
-Key radius() { return number_key("radius_m", "radius").in("m").above(0).at_most(1e6); }
+Key radius() { return number_key("radius_m", "radius").in("m").positive(1e6); }
 
 KeyTable<HalfSpace> half_space_keys() {
-  KeyTable<HalfSpace> table;
-  table.optional(place("point_m", "a point of the plane"), &HalfSpace::point_m);
-  table.optional(vector_key("normal", "outward direction, of any length").from(-1e6, 1e6), &HalfSpace::normal);
-  table.optional(velocity(), &HalfSpace::velocity_m_s);
-  return table;
+  return KeyTable<HalfSpace>()
+      .optional(place("point_m", "a point of the plane"), &HalfSpace::point_m)
+      .optional(vector_key("normal", "outward direction, of any length").from(-1e6, 1e6), &HalfSpace::normal)
+      .optional(velocity(), &HalfSpace::velocity_m_s);
 }
 
 KeyTable<Ball> ball_keys() {
-  KeyTable<Ball> table;
-  table.required(place("centre_m", "centre"), &Ball::centre_m);
-  table.required(radius(), &Ball::radius_m);
-  table.optional(velocity(), &Ball::velocity_m_s);
-  return table;
+  return KeyTable<Ball>()
+      .required(place("centre_m", "centre"), &Ball::centre_m)
+      .required(radius(), &Ball::radius_m)
+      .optional(velocity(), &Ball::velocity_m_s);
 }
 
 KeyTable<Capsule> capsule_keys() {
-  KeyTable<Capsule> table;
-  table.required(place("from_m", "one end of the line"), &Capsule::from_m);
-  table.required(place("to_m", "the other end"), &Capsule::to_m);
-  table.required(radius(), &Capsule::radius_m);
-  table.optional(velocity(), &Capsule::velocity_m_s);
-  return table;
+  return KeyTable<Capsule>()
+      .required(place("from_m", "one end of the line"), &Capsule::from_m)
+      .required(place("to_m", "the other end"), &Capsule::to_m)
+      .required(radius(), &Capsule::radius_m)
+      .optional(velocity(), &Capsule::velocity_m_s);
 }
 
 const auto& solid_kinds() {
@@ -135,10 +132,10 @@ void read_list(const KeyTable<Item>& keys, const KeyValue& list, std::vector<Ite
 KeyTable<SectionShape> section_keys() {
   using Given = GivenSection;
   const auto length = [](const char* name, const char* help) {
-    return number_key(name, help).in("m").above(0).at_most(1e3).plausibly(1e-6, 10);
+    return number_key(name, help).in("m").positive(1e3).plausibly(1e-6, 10);
   };
   const auto moment = [](const char* name, const char* help) {
-    return number_key(name, help).in("m^4").above(0).at_most(1e12);
+    return number_key(name, help).in("m^4").positive(1e12);
   };
   const auto width_m = [](auto& of) -> decltype((of.width_m)) { return of.width_m; };
   const auto height_m = [](auto& of) -> decltype((of.height_m)) { return of.height_m; };
@@ -152,96 +149,91 @@ KeyTable<SectionShape> section_keys() {
   table.required(length("wall_m", "thickness of the wall of a tube with the outer radius radius_m"), &Tube::wall_m);
   table.required(length("width_m", "across the height"), width_m);
   table.required(length("height_m", "upwards in a bending rod, outwards in a helix or a ring"), height_m);
-  table.required(number_key("area_m2", "area A").in("m^2").above(0).at_most(1e6), &Given::area_m2);
+  table.required(number_key("area_m2", "area A").in("m^2").positive(1e6), &Given::area_m2);
   table.required(moment("second_moment_height_m4", "integral of the squared height over the area: for bending upwards"),
                  &Given::second_moment_height_m4);
   table.required(moment("second_moment_width_m4", "integral of the squared width over the area: for bending sideways"),
                  &Given::second_moment_width_m4);
   table.required(moment("torsion_constant_m4", "J of the torsional stiffness G J"), &Given::torsion_constant_m4);
-  table.optional(number_key("shear_coefficient", "kappa of the shear stiffness kappa G A").above(0).at_most(1),
+  table.optional(number_key("shear_coefficient", "kappa of the shear stiffness kappa G A").positive(1),
                  &Given::shear_coefficient);
   return table;
 }
 
 KeyTable<TipMotion> tip_motion_keys() {
-  KeyTable<TipMotion> table;
-  table.required(number_key("duration_s", "time of the motion, from the start").in("s").above(0).at_most(1e6),
-                 &TipMotion::duration_s);
-  table.optional(vector_key("displacement_m", "from the initial place of the end").in("m").from(-1e6, 1e6),
-                 &TipMotion::displacement_m);
-  table.optional(
-      vector_key("rotation_deg", "rotation vector, in the world: the axis times the angle").in("deg").from(-1e6, 1e6),
-      &TipMotion::rotation_deg);
-  return table;
+  return KeyTable<TipMotion>()
+      .required(number_key("duration_s", "time of the motion, from the start").in("s").positive(1e6),
+                &TipMotion::duration_s)
+      .optional(vector_key("displacement_m", "from the initial place of the end").in("m").from(-1e6, 1e6),
+                &TipMotion::displacement_m)
+      .optional(vector_key("rotation_deg", "rotation vector, in the world: the axis times the angle")
+                    .in("deg")
+                    .from(-1e6, 1e6),
+                &TipMotion::rotation_deg);
 }
 
 KeyTable<WindParameters> wind_keys() {
   using Air = WindParameters;
-  KeyTable<Air> table;
-  table.required(vector_key("mean_m_s", "mean velocity")
-                     .in("m/s")
-                     .from(-1e3, 1e3)
-                     .plausibly(0, 120, "a hurricane has 33 and more"),
-                 &Air::mean_m_s);
-  table.optional(number_key("gust_strength", "strength of gusts, relative to the mean velocity").from(0, 10),
-                 &Air::gust_strength);
-  table.optional(number_key("gust_period_s", "period of the gusts").in("s").above(0).at_most(1e6), &Air::gust_period_s);
-  table.optional(
-      number_key("turbulence_m_s", "root mean square of each component of the turbulence").in("m/s").from(0, 1e3),
-      &Air::turbulence_m_s);
-  table.optional(number_key("turbulence_length_m", "distance L of the turbulence's correlation exp(-r^2 / 2 L^2)")
-                     .in("m")
-                     .above(0)
-                     .at_most(1e6),
-                 &Air::turbulence_length_m);
-  table.optional(integer_key("turbulence_modes", "number of waves in the turbulence").from(1, 10000),
-                 &Air::turbulence_modes);
-  table.optional(integer_key("seed", "seed of the turbulence").from(0, 1e15), &Air::seed);
-  table.optional(
-      number_key("profile_exponent", "p of the mean profile (height / reference_height_m)^p; 0: uniform").from(0, 2),
-      &Air::profile_exponent);
-  table.optional(number_key("reference_height_m", "height at which mean_m_s applies").in("m").above(0).at_most(1e6),
-                 &Air::reference_height_m);
-  table.optional(number_key("air_density_kg_m3", "density of the air").in("kg/m^3").from(0, 1e4),
-                 &Air::air_density_kg_m3);
-  table.optional(
-      number_key("drag_coefficient", "for flow across a segment, based on length times diameter").from(0, 1e3),
-      &Air::drag_coefficient);
-  table.optional(number_key("friction_coefficient", "for flow along a segment, based on its surface").from(0, 1e3),
-                 &Air::friction_coefficient);
-  return table;
+  return KeyTable<Air>()
+      .required(vector_key("mean_m_s", "mean velocity")
+                    .in("m/s")
+                    .from(-1e3, 1e3)
+                    .plausibly(0, 120, "a hurricane has 33 and more"),
+                &Air::mean_m_s)
+      .optional(number_key("gust_strength", "strength of gusts, relative to the mean velocity").from(0, 10),
+                &Air::gust_strength)
+      .optional(number_key("gust_period_s", "period of the gusts").in("s").positive(1e6), &Air::gust_period_s)
+      .optional(
+          number_key("turbulence_m_s", "root mean square of each component of the turbulence").in("m/s").from(0, 1e3),
+          &Air::turbulence_m_s)
+      .optional(number_key("turbulence_length_m", "distance L of the turbulence's correlation exp(-r^2 / 2 L^2)")
+                    .in("m")
+                    .positive(1e6),
+                &Air::turbulence_length_m)
+      .optional(integer_key("turbulence_modes", "number of waves in the turbulence").from(1, 10000),
+                &Air::turbulence_modes)
+      .optional(integer_key("seed", "seed of the turbulence").from(0, 1e15), &Air::seed)
+      .optional(number_key("profile_exponent", "p of the mean profile (height / reference_height_m)^p; 0: uniform")
+                    .from(0, 2),
+                &Air::profile_exponent)
+      .optional(number_key("reference_height_m", "height at which mean_m_s applies").in("m").positive(1e6),
+                &Air::reference_height_m)
+      .optional(number_key("air_density_kg_m3", "density of the air").in("kg/m^3").from(0, 1e4),
+                &Air::air_density_kg_m3)
+      .optional(
+          number_key("drag_coefficient", "for flow across a segment, based on length times diameter").from(0, 1e3),
+          &Air::drag_coefficient)
+      .optional(number_key("friction_coefficient", "for flow along a segment, based on its surface").from(0, 1e3),
+                &Air::friction_coefficient);
 }
 
 KeyTable<ContactSettings> contact_keys() {
   using Settings = ContactSettings;
-  KeyTable<Settings> table;
-  table.optional(number_key("friction", "Coulomb friction coefficient, static and sliding").from(0, 100),
-                 &Settings::friction);
-  table.optional(number_key("obstacle_friction",
-                            "friction coefficient of rods with obstacles and the floor; \"friction\": the same")
-                     .from(0, 100)
-                     .or_word("friction"),
-                 &Settings::obstacle_friction);
-  table.optional(
-      number_key("restitution",
-                 "coefficient of restitution: speed of separation after an impact, over that of the approach")
-          .from(0, 1),
-      &Settings::restitution);
-  table.optional(
-      number_key("tolerance", "contacts have converged if no correction of a segment is larger than this, in its radii")
-          .above(0)
-          .at_most(1),
-      &Settings::tolerance);
-  table.optional(
-      integer_key("sweeps",
-                  "maximum number of sweeps over all contacts, there and back, after a projection of the rods")
-          .from(1, 10000),
-      &Settings::sweeps);
-  table.optional(number_key("recovery",
-                            "fraction of a penetration from earlier steps that a step removes, at most 1 % of a radius")
-                     .from(0, 1),
-                 &Settings::recovery);
-  return table;
+  return KeyTable<Settings>()
+      .optional(number_key("friction", "Coulomb friction coefficient, static and sliding").from(0, 100),
+                &Settings::friction)
+      .optional(number_key("obstacle_friction",
+                           "friction coefficient of rods with obstacles and the floor; \"friction\": the same")
+                    .from(0, 100)
+                    .or_word("friction"),
+                &Settings::obstacle_friction)
+      .optional(number_key("restitution",
+                           "coefficient of restitution: speed of separation after an impact, over that of the approach")
+                    .from(0, 1),
+                &Settings::restitution)
+      .optional(number_key("tolerance",
+                           "contacts have converged if no correction of a segment is larger than this, in its radii")
+                    .positive(1),
+                &Settings::tolerance)
+      .optional(
+          integer_key("sweeps",
+                      "maximum number of sweeps over all contacts, there and back, after a projection of the rods")
+              .from(1, 10000),
+          &Settings::sweeps)
+      .optional(number_key("recovery",
+                           "fraction of a penetration from earlier steps that a step removes, at most 1 % of a radius")
+                    .from(0, 1),
+                &Settings::recovery);
 }
 
 Key obstacles_key() {

@@ -10,7 +10,6 @@
 #include "runner/specs/guess_keys.hpp"
 #include "runner/specs/plugin_keys.hpp"
 #include "runner/text/job_error.hpp"
-#include "runner/text/key_path.hpp"
 
 namespace rodsweep {
 namespace {
@@ -35,149 +34,137 @@ int whole_steps(double duration_s, double step_s, const JobFiles& job) {
   if (steps < 1 || std::abs(ratio - steps) > tolerance * steps) {
     const double below = std::max(1.0, std::floor(ratio));
     throw job_error(job.path, "time.duration_s",
-                    fmt::format("{} is not allowed with step_s {}: it is {:.8g} steps; must be a whole number of "
-                                "steps, such as {:.8g}, or give \"steps\" instead",
-                                duration_s, step_s, ratio, below * step_s));
+                    "{} is not allowed with step_s {}: it is {:.8g} steps; must be a whole number of steps, such as "
+                    "{:.8g}, or give \"steps\" instead",
+                    duration_s, step_s, ratio, below * step_s);
   }
   if (steps > most) {
     throw job_error(job.path, "time.duration_s",
-                    fmt::format("{} is not allowed with step_s {}: it is {:.8g} steps; must be at most {}", duration_s,
-                                step_s, ratio, most));
+                    "{} is not allowed with step_s {}: it is {:.8g} steps; must be at most {}", duration_s, step_s,
+                    ratio, most);
   }
   return static_cast<int>(steps);
 }
 
 KeyTable<TimeSpec> time_keys() {
   constexpr const char* run = "length of the run";
-  KeyTable<TimeSpec> table;
-  table.required(number_key("step_s", "time step")
-                     .in("s")
-                     .above(0)
-                     .at_most(1000)
-                     .plausibly(1e-6, 1)
-                     .also_called({"dt", "dt_s", "time_step_s"}),
-                 &TimeSpec::step_s);
-  table.optional(
-      choice_key("integrator", "euler: the paper's implicit Euler, first order; bdf2: second order, as costly a step"),
-      Words<Integrator>{{"euler", Integrator::euler}, {"bdf2", Integrator::bdf2}}, &TimeSpec::integrator);
-  table.required(integer_key("steps", "number of time steps").from(1, 10000000).one_of_group(run), &TimeSpec::steps);
-  table.unbound(number_key("duration_s", "simulated time, a whole number of steps")
+  return KeyTable<TimeSpec>()
+      .required(number_key("step_s", "time step")
                     .in("s")
-                    .above(0)
-                    .at_most(1e9)
-                    .one_of_group(run));
-  table.optional(integer_key("newton_iterations",
-                             "maximum number of Newton iterations per step; xpbd and pbd use solve.iterations")
-                     .from(1, 1000),
-                 &TimeSpec::newton_iterations);
-  table.optional(
-      number_key("newton_tolerance", "Newton iterations of a step end when max |C + alpha~ lambda| is below this")
-          .from(0, 1),
-      &TimeSpec::newton_tolerance);
-  table.optional(
-      boolean_key(
-          "balance",
-          "false: the paper's step; true: Newton starts from the last step's multipliers and also balances momentum, "
-          "so equilibria do not depend on the step; helices need newton_iterations of 20 (direct and cg)"),
-      &TimeSpec::balance);
-  table.optional(
-      number_key("momentum_tolerance",
-                 "with `balance`: allowed momentum residual of a segment, relative to the greatest joint force")
-          .above(0)
-          .at_most(1),
-      &TimeSpec::momentum_tolerance);
-  return table;
+                    .positive(1000)
+                    .plausibly(1e-6, 1)
+                    .also_called({"dt", "dt_s", "time_step_s"}),
+                &TimeSpec::step_s)
+      .optional(choice_key("integrator",
+                           "euler: the paper's implicit Euler, first order; bdf2: second order, as costly a step"),
+                Words<Integrator>{{"euler", Integrator::euler}, {"bdf2", Integrator::bdf2}}, &TimeSpec::integrator)
+      .required(integer_key("steps", "number of time steps").from(1, 10000000).one_of_group(run), &TimeSpec::steps)
+      .unbound(
+          number_key("duration_s", "simulated time, a whole number of steps").in("s").positive(1e9).one_of_group(run))
+      .optional(integer_key("newton_iterations",
+                            "maximum number of Newton iterations per step; xpbd and pbd use solve.iterations")
+                    .from(1, 1000),
+                &TimeSpec::newton_iterations)
+      .optional(
+          number_key("newton_tolerance", "Newton iterations of a step end when max |C + alpha~ lambda| is below this")
+              .from(0, 1),
+          &TimeSpec::newton_tolerance)
+      .optional(boolean_key("balance",
+                            "false: the paper's step; true: Newton starts from the last step's multipliers and also "
+                            "balances momentum, so equilibria do not depend on the step; helices need "
+                            "newton_iterations of 20 (direct and cg)"),
+                &TimeSpec::balance)
+      .optional(
+          number_key("momentum_tolerance",
+                     "with `balance`: allowed momentum residual of a segment, relative to the greatest joint force")
+              .positive(1),
+          &TimeSpec::momentum_tolerance);
 }
 
 KeyTable<LearnedPreconditioner> learned_preconditioner_keys() {
-  KeyTable<LearnedPreconditioner> table;
-  table.required(file_key("model", FileKind::model, "model file of a train job, with the processor \"factors\""),
-                 &LearnedPreconditioner::model);
-  return table;
+  return KeyTable<LearnedPreconditioner>().required(
+      file_key("model", FileKind::model, "model file of a train job, with the processor \"factors\""),
+      &LearnedPreconditioner::model);
 }
 
 KeyTable<SolveSpec> solve_keys() {
   const auto stretch = [](SolveSpec& solve) -> double& { return solve.stiffness.stretch; };
   const auto bending = [](SolveSpec& solve) -> double& { return solve.stiffness.bending; };
-  KeyTable<SolveSpec> table;
-  table.optional(
-      choice_key(
-          "method",
-          "cg: conjugate gradients with counted iterations; direct: only the direct solve; in closed loops, without "
-          "linear systems: end_to_end: a network's increments; state_network: a network's accelerations, without "
-          "constraints; xpbd, pbd: Gauss-Seidel over the joints, with and without compliances"),
-      methods, &SolveSpec::method);
-  table.required(file_key("model", FileKind::model, "model file of a train job")
-                     .only({"end_to_end", "state_network"}, "for a model that starts cg use the guess \"copingnet\""),
-                 &SolveSpec::model);
-  table.unbound(integer_key("iterations", "maximum number of Gauss-Seidel iterations per step")
-                    .from(1, 10000)
-                    .defaults_to(gauss_seidel_iterations)
-                    .only({"xpbd", "pbd"}, "use max_iterations for cg, time.newton_iterations for Newton"));
-  table.optional(number_key("stretch_stiffness", "fraction of a stretch or shear that one correction removes")
-                     .from(0, 1)
-                     .only({"pbd"}, "the moduli and stretch_compliance_per_j of the scene set the stiffness"),
-                 stretch);
-  table.optional(number_key("bending_stiffness", "fraction of a bend or twist that one correction removes")
-                     .from(0, 1)
-                     .only({"pbd"}, "the moduli of the scene set the stiffness"),
-                 bending);
-  table.optional(choice_key("preconditioner",
-                            "preconditioner of cg. icc: no fill; block_icc: some levels of fill; cholesky: all fill; "
-                            "lagged_cholesky: cholesky, reused for some steps; condensed: cg with block_icc on the "
-                            "motions of the segments where rods cross, all others eliminated; learned: the factors of "
-                            "learned_preconditioner; plugin, python: your own"),
-                 Words<Preconditioner>{{"none", Preconditioner::none},
-                                       {"jacobi", Preconditioner::jacobi},
-                                       {"point_block_jacobi", Preconditioner::point_block_jacobi},
-                                       {"icc", Preconditioner::icc},
-                                       {"block_icc", Preconditioner::block_icc},
-                                       {"cholesky", Preconditioner::cholesky},
-                                       {"lagged_cholesky", Preconditioner::lagged_cholesky},
-                                       {"condensed", Preconditioner::condensed},
-                                       {"learned", Preconditioner::learned},
-                                       {"plugin", Preconditioner::plugin},
-                                       {"python", Preconditioner::python}},
-                 &SolveSpec::preconditioner);
-  table.optional(object_key("learned_preconditioner", "the model of the preconditioner \"learned\"").or_word("none"),
-                 learned_preconditioner_keys(), &SolveSpec::learned);
-  table.optional(
-      object_key("plugin_preconditioner", "the shared library of the preconditioner \"plugin\"").or_word("none"),
-      plugin_keys<PluginFile>(), &SolveSpec::plugin);
-  table.optional(
-      object_key("python_preconditioner", "the Python file of the preconditioner \"python\"").or_word("none"),
-      python_keys<PythonFile>(FileKind::python_preconditioner), &SolveSpec::python);
-  table.optional(integer_key("fill_levels", "block_icc: levels of fill").from(0, 100), &SolveSpec::fill_levels);
-  table.optional(integer_key("lag_steps",
-                             "time steps between set-ups of the preconditioner, from the first Newton iteration's "
-                             "matrix; 0: set-up for every system, or 10 with lagged_cholesky")
-                     .from(0, 1000000),
-                 &SolveSpec::lag_steps);
-  table.optional(choice_key("norm", "residual norm of the stopping test of cg"),
-                 Words<Norm>{{"true_residual", Norm::true_residual}, {"natural", Norm::natural}}, &SolveSpec::norm);
-  table.optional(choice_key("reference",
-                            "solve that advances the rods in a paired evaluation of cg. direct: the direct solve, "
-                            "timed in every evaluation; cg: cg from zero to the tightest tolerance, without any direct "
-                            "solve, for large nets and lattices"),
-                 Words<Reference>{{"direct", Reference::direct}, {"cg", Reference::cg}}, &SolveSpec::reference);
-  table.optional(
-      number_key(
-          "tolerance",
-          "tolerance of the timed solves, relative to ||b||; in a closed loop also of the solves that advance the rod")
-          .above(0)
-          .at_most(1),
-      &SolveSpec::tolerance);
-  table.optional(choice_key("forcing",
-                            "fixed: every solve to `tolerance`; eisenstat_walker: the first solve of a step to "
-                            "`tolerance`, later tolerances follow the convergence of Newton (closed loops)"),
-                 Words<Forcing>{{"fixed", Forcing::fixed}, {"eisenstat_walker", Forcing::eisenstat_walker}},
-                 &SolveSpec::forcing);
-  table.optional(
-      integer_key("max_iterations", "limit on cg iterations; 0: ten times the number of unknowns").from(0, 32767),
-      &SolveSpec::max_iterations);
-  table.optional(integer_key("timing_repeats", "repeats of guess and solve; times are medians over them").from(1, 1000),
-                 &SolveSpec::timing_repeats);
-  return table;
+  return KeyTable<SolveSpec>()
+      .optional(
+          choice_key(
+              "method",
+              "cg: conjugate gradients with counted iterations; direct: only the direct solve; in closed loops, "
+              "without linear systems: end_to_end: a network's increments; state_network: a network's accelerations, "
+              "without constraints; xpbd, pbd: Gauss-Seidel over the joints, with and without compliances"),
+          methods, &SolveSpec::method)
+      .required(file_key("model", FileKind::model, "model file of a train job")
+                    .only({"end_to_end", "state_network"}, "for a model that starts cg use the guess \"copingnet\""),
+                &SolveSpec::model)
+      .unbound(integer_key("iterations", "maximum number of Gauss-Seidel iterations per step")
+                   .from(1, 10000)
+                   .defaults_to(gauss_seidel_iterations)
+                   .only({"xpbd", "pbd"}, "use max_iterations for cg, time.newton_iterations for Newton"))
+      .optional(number_key("stretch_stiffness", "fraction of a stretch or shear that one correction removes")
+                    .from(0, 1)
+                    .only({"pbd"}, "the moduli and stretch_compliance_per_j of the scene set the stiffness"),
+                stretch)
+      .optional(number_key("bending_stiffness", "fraction of a bend or twist that one correction removes")
+                    .from(0, 1)
+                    .only({"pbd"}, "the moduli of the scene set the stiffness"),
+                bending)
+      .optional(choice_key("preconditioner",
+                           "preconditioner of cg. icc: no fill; block_icc: some levels of fill; cholesky: all fill; "
+                           "lagged_cholesky: cholesky, reused for some steps; condensed: cg with block_icc on the "
+                           "motions of the segments where rods cross, all others eliminated; learned: the factors of "
+                           "learned_preconditioner; plugin, python: your own"),
+                Words<Preconditioner>{{"none", Preconditioner::none},
+                                      {"jacobi", Preconditioner::jacobi},
+                                      {"point_block_jacobi", Preconditioner::point_block_jacobi},
+                                      {"icc", Preconditioner::icc},
+                                      {"block_icc", Preconditioner::block_icc},
+                                      {"cholesky", Preconditioner::cholesky},
+                                      {"lagged_cholesky", Preconditioner::lagged_cholesky},
+                                      {"condensed", Preconditioner::condensed},
+                                      {"learned", Preconditioner::learned},
+                                      {"plugin", Preconditioner::plugin},
+                                      {"python", Preconditioner::python}},
+                &SolveSpec::preconditioner)
+      .optional(object_key("learned_preconditioner", "the model of the preconditioner \"learned\"").or_word("none"),
+                learned_preconditioner_keys(), &SolveSpec::learned)
+      .optional(
+          object_key("plugin_preconditioner", "the shared library of the preconditioner \"plugin\"").or_word("none"),
+          plugin_keys<PluginFile>(), &SolveSpec::plugin)
+      .optional(object_key("python_preconditioner", "the Python file of the preconditioner \"python\"").or_word("none"),
+                python_keys<PythonFile>(FileKind::python_preconditioner), &SolveSpec::python)
+      .optional(integer_key("fill_levels", "block_icc: levels of fill").from(0, 100), &SolveSpec::fill_levels)
+      .optional(integer_key("lag_steps",
+                            "time steps between set-ups of the preconditioner, from the first Newton iteration's "
+                            "matrix; 0: set-up for every system, or 10 with lagged_cholesky")
+                    .from(0, 1000000),
+                &SolveSpec::lag_steps)
+      .optional(choice_key("norm", "residual norm of the stopping test of cg"),
+                Words<Norm>{{"true_residual", Norm::true_residual}, {"natural", Norm::natural}}, &SolveSpec::norm)
+      .optional(choice_key("reference",
+                           "solve that advances the rods in a paired evaluation of cg. direct: the direct solve, timed "
+                           "in every evaluation; cg: cg from zero to the tightest tolerance, without any direct solve, "
+                           "for large nets and lattices"),
+                Words<Reference>{{"direct", Reference::direct}, {"cg", Reference::cg}}, &SolveSpec::reference)
+      .optional(number_key("tolerance",
+                           "tolerance of the timed solves, relative to ||b||; in a closed loop also of the solves that "
+                           "advance the rod")
+                    .positive(1),
+                &SolveSpec::tolerance)
+      .optional(choice_key("forcing",
+                           "fixed: every solve to `tolerance`; eisenstat_walker: the first solve of a step to "
+                           "`tolerance`, later tolerances follow the convergence of Newton (closed loops)"),
+                Words<Forcing>{{"fixed", Forcing::fixed}, {"eisenstat_walker", Forcing::eisenstat_walker}},
+                &SolveSpec::forcing)
+      .optional(
+          integer_key("max_iterations", "limit on cg iterations; 0: ten times the number of unknowns").from(0, 32767),
+          &SolveSpec::max_iterations)
+      .optional(integer_key("timing_repeats", "repeats of guess and solve; times are medians over them").from(1, 1000),
+                &SolveSpec::timing_repeats);
 }
 
 }  // namespace
@@ -196,7 +183,7 @@ TimeSpec time_spec(const Point& point, const JobFiles& job) {
   if (!point.has("time.steps")) time.steps = whole_steps(point.number("time.duration_s"), time.step_s, job);
   if (is_gauss_seidel(method(point))) {  // a swept method has no per-method default
     const bool given = point.has("solve.iterations");
-    time.newton_iterations = given ? static_cast<int>(point.integer("solve.iterations")) : gauss_seidel_iterations;
+    time.newton_iterations = given ? static_cast<int>(point.number("solve.iterations")) : gauss_seidel_iterations;
   }
   return time;
 }
@@ -207,8 +194,8 @@ SolveSpec solve_spec(const Point& point, const JobFiles& job) {
   solve.method = Method::direct;
   keys.fill(solve, {point, job, "solve"});
   if (is_network(solve.method) && solve.model.empty())
-    throw job_error(job.path, "solve.model",
-                    fmt::format("missing: \"{}\" needs the model file of a train job", point.text("solve.method")));
+    throw job_error(job.path, "solve.model", "missing: \"{}\" needs the model file of a train job",
+                    point.text("solve.method"));
   return solve;
 }
 
@@ -230,15 +217,15 @@ static void check_condensed(const Point& point, const std::vector<std::string>& 
   if (method(point) != Method::cg || point.text("solve.preconditioner") != "condensed") return;
   constexpr const char* not_allowed = "not allowed with the preconditioner \"condensed\" (its unknowns are motions)";
   if (point.text("solve.norm") != "true_residual")
-    throw job_error(job.path, "solve.norm",
-                    fmt::format("\"{}\" is {}; must be \"true_residual\"", point.text("solve.norm"), not_allowed));
+    throw job_error(job.path, "solve.norm", "\"{}\" is {}; must be \"true_residual\"", point.text("solve.norm"),
+                    not_allowed);
   const std::vector<GuessSpec> guesses = guess_specs(point, labels, job);
   for (std::size_t i = 0; i < guesses.size(); ++i)
     if (const char* name = find_guess<guess::Deflation>(guesses[i]) ? guess::Deflation::name
                            : find_guess<guess::Ritz>(guesses[i])    ? guess::Ritz::name
                                                                     : nullptr)
-      throw job_error(job.path, element("guesses", i),
-                      fmt::format("\"{}\" is {}; must be another guess, such as \"subspace\"", name, not_allowed));
+      throw job_error(job.path, element("guesses", i), "\"{}\" is {}; must be another guess, such as \"subspace\"",
+                      name, not_allowed);
 }
 
 /// Checks that the file of a preconditioner is given.
@@ -250,8 +237,7 @@ static void check_preconditioner(const Point& point, const JobFiles& job) {
         std::tuple("python", "file", "a Python file")}) {
     const std::string key = fmt::format("solve.{}_preconditioner", of);
     if (word == of && !point.has(member(key, file)))
-      throw job_error(job.path, key,
-                      fmt::format("missing: the preconditioner \"{}\" needs {}: {{\"{}\": FILE}}", of, what, file));
+      throw job_error(job.path, key, "missing: the preconditioner \"{}\" needs {}: {{\"{}\": FILE}}", of, what, file);
   }
 }
 
@@ -261,27 +247,26 @@ void check_method(const Point& point, const std::vector<std::string>& labels, co
   if (const Method own = method(point);
       point.has("time.balance") && point.number("time.balance") != 0 && own != Method::cg && own != Method::direct)
     throw job_error(job.path, "time.balance",
-                    fmt::format("true is not allowed with solve.method \"{}\", which solves no linear system; must be "
-                                "used with \"direct\" or \"cg\"",
-                                point.text("solve.method")));
+                    "true is not allowed with solve.method \"{}\", which solves no linear system; must be used with "
+                    "\"direct\" or \"cg\"",
+                    point.text("solve.method"));
   if (method(point) == Method::state_network && point.text("time.integrator") != "euler")
     throw job_error(
         job.path, "time.integrator",
-        fmt::format("\"{}\" is not allowed with solve.method \"state_network\", which takes steps of Euler; "
-                    "must be \"euler\"",
-                    point.text("time.integrator")));
+        "\"{}\" is not allowed with solve.method \"state_network\", which takes steps of Euler; must be \"euler\"",
+        point.text("time.integrator"));
   if (evaluation(point) == Evaluation::closed_loop) return;
   if (point.has("solve.forcing") && point.text("solve.forcing") != "fixed")
     throw job_error(job.path, "solve.forcing",
-                    fmt::format("\"{}\" is not allowed with evaluation \"paired\", whose reference solve advances the "
-                                "rod; must be used with \"closed_loop\"",
-                                point.text("solve.forcing")));
+                    "\"{}\" is not allowed with evaluation \"paired\", whose reference solve advances the rod; must be "
+                    "used with \"closed_loop\"",
+                    point.text("solve.forcing"));
   const Method own = method(point);
   if (own == Method::cg || own == Method::direct) return;
   throw job_error(job.path, "solve.method",
-                  fmt::format("\"{}\" is not allowed with evaluation \"paired\", whose direct solve advances the rod; "
-                              "must be used with \"closed_loop\"",
-                              point.text("solve.method")));
+                  "\"{}\" is not allowed with evaluation \"paired\", whose direct solve advances the rod; must be used "
+                  "with \"closed_loop\"",
+                  point.text("solve.method"));
 }
 
 }  // namespace rodsweep

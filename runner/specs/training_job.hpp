@@ -1,9 +1,10 @@
 // A job of kind "train": data sets, network and training settings.
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "network/encoding/coping_net_settings.hpp"

@@ -1,16 +1,10 @@
 #include "runner/sweep/sweep_space.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "runner/keys/option_label.hpp"
 #include "runner/keys/sweep_words.hpp"
-#include "runner/keys/tables.hpp"
 #include "runner/text/job_error.hpp"
-#include "runner/text/key_path.hpp"
 #include "solver/numbers/counter_random.hpp"
 
 namespace rodsweep {
@@ -114,9 +108,8 @@ void SweepSpace::read_sweep(const Key& key, const Json& value, const std::string
   const auto axis = static_cast<std::size_t>(scope.zip_axis);
   const std::size_t length = scope.axes[axis].options.size();
   if (content.size() != length) {
-    throw job_error(file_, path,
-                    fmt::format("this zip has {} values, but {} has {}; all zips must have the same length",
-                                content.size(), scope.zip_path, length));
+    throw job_error(file_, path, "this zip has {} values, but {} has {}; all zips must have the same length",
+                    content.size(), scope.zip_path, length);
   }
   for (std::size_t i = 0; i < length; ++i) read(key, content[i], path, component, scope.axes[axis].options[i]);
 }

@@ -28,7 +28,7 @@ std::string bytes_text(std::int64_t bytes) {
   return fmt::format("{:.3g} {}", value, units[unit]);
 }
 
-std::string counted(std::int64_t count, std::string_view noun) {
+std::string count_text(std::int64_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 

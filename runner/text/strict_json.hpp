@@ -4,8 +4,9 @@
 // errors contain file and key path.
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
+
+#include <filesystem>
 #include <string>
 
 namespace rodsweep {

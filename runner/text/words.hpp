@@ -5,6 +5,7 @@
 #include <cctype>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,24 @@ const char* word_of(const Words<Value>& words, Value value) {
 inline std::string lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
+}
+
+// Finds the known word nearest to a mistyped one, for "did you mean". Distance: Damerau-Levenshtein (optimal string
+// alignment), ignoring case. A word that continues the mistyped one ("length" -> "length_m") is also near.
+
+/// Empty if none of `known` is near enough.
+std::string nearest(std::string_view word, const std::vector<std::string>& known);
+
+/// "; did you mean "length_m"?", or empty.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
+
+// Shortens a user's text for messages; cuts between characters.
+
+inline std::string shortened(const std::string& text, std::size_t longest = 60) {
+  if (text.size() <= longest) return text;
+  std::size_t end = longest;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // inside a UTF-8 character
+  return text.substr(0, end) + "...";
 }
 
 }  // namespace rodsweep

@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "network/encoding/feature_encoder.hpp"
+#include "network/encoding/stored_simulation.hpp"
+#include "network/training/example.hpp"
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/specs/training_job.hpp"
 
@@ -49,5 +52,23 @@ std::int64_t systems_of(const LearningSets::Simulation& simulation);
 
 /// The paths, joined for messages.
 std::string paths_of(const std::vector<std::filesystem::path>& sets);
+
+/// The data of a training: training examples, validation examples, and simulations to measure CG ratios.
+/// Scales come from the training examples only. The examples are the same on every rank.
+struct TrainingData {
+  std::vector<Example> training, validation;  ///< normalised
+  FeatureScales scales;
+  std::int64_t training_simulations = 0, validation_simulations = 0;
+  std::vector<std::string> validation_scenes;  ///< scene type of each validation simulation
+  std::string hash;                            ///< of the data sets
+  std::string note;                            ///< a warning for the user; may be empty
+};
+
+/// Throws FileError if there are too few examples.
+TrainingData training_data(const TrainingJob& training, const LearningSets& sets, int threads);
+
+/// The validation simulations i to measure CG ratios on, with i mod `parts` = `part`.
+std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const LearningSets& sets, int part,
+                                                int parts);
 
 }  // namespace rodsweep

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "network/processor/model.hpp"
-#include "runner/training/model_card.hpp"
+#include "runner/training/model_file.hpp"
 
 namespace rodsweep {
 
@@ -57,8 +57,7 @@ struct ScenePlace {
 inline constexpr const char* scene_types_path = "/validation/scenes/type";
 inline constexpr std::array<ScenePlace, 2> scene_places{{
     {"/validation/scenes/cg_ratio",
-     "CG iterations with the model over those from zero, mean over validation "
-     "simulations of the scene",
+     "CG iterations with the model over those from zero, mean over validation simulations of the scene",
      &SceneRatios::cg_ratio},
     {"/validation/scenes/base_cg_ratio", "the same for the model's base guess alone", &SceneRatios::base_cg_ratio},
 }};

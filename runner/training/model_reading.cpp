@@ -22,7 +22,7 @@ template <class T>
 std::vector<T> read(hid_t file, const std::string& path, const std::vector<hsize_t>& extent) {
   const std::vector<hsize_t> found = hdf5::extent(hdf5::open_dataset(file, path), path);
   if (found != extent)
-    throw Damage(fmt::format("{} has the shape [{}], not [{}]", path, fmt::join(found, ", "), fmt::join(extent, ", ")));
+    throw Damage("{} has the shape [{}], not [{}]", path, fmt::join(found, ", "), fmt::join(extent, ", "));
   return hdf5::read_all<T>(file, path);
 }
 
@@ -34,7 +34,7 @@ std::vector<float> read_finite(hid_t file, const std::string& path, const std::v
 }
 
 CopingNetSettings read_settings(hid_t file, const fs::path& path) {
-  const std::string text = hdf5::read_texts(file, "/model/settings").at(0);
+  const std::string text = hdf5::read_all<std::string>(file, "/model/settings").at(0);
   JobReader reader(path);
   const auto values = reader.read(network_key(), parse_strict_json(text, path), "/model/settings");
   reader.throw_mistakes();
@@ -90,7 +90,8 @@ std::vector<SceneRatios> read_scenes(hid_t file) {
   constexpr std::size_t columns = ValidationRatio::tolerance_count;
   std::vector<SceneRatios> scenes;
   if (!hdf5::exists(file, scene_types_path)) return scenes;
-  for (std::string& type : hdf5::read_texts(file, scene_types_path)) scenes.push_back({std::move(type), {}, {}});
+  for (std::string& type : hdf5::read_all<std::string>(file, scene_types_path))
+    scenes.push_back({std::move(type), {}, {}});
   for (const ScenePlace& place : scene_places) {
     const auto ratios = read<double>(file, place.path, {scenes.size(), columns});
     for (std::size_t i = 0; i < scenes.size(); ++i)
@@ -103,14 +104,14 @@ std::vector<SceneRatios> read_scenes(hid_t file) {
 ModelCard read_card(hid_t file) {
   ModelCard card;
   card.name = hdf5::read_text_attribute(file, "/job", "name");
-  card.job_text = hdf5::read_texts(file, "/job/text").at(0);
-  card.data_path = hdf5::read_texts(file, "/data/path").at(0);
-  card.data_hash = hdf5::read_texts(file, "/data/hash").at(0);
+  card.job_text = hdf5::read_all<std::string>(file, "/job/text").at(0);
+  card.data_path = hdf5::read_all<std::string>(file, "/data/path").at(0);
+  card.data_hash = hdf5::read_all<std::string>(file, "/data/hash").at(0);
   for (const CountPlace& place : count_places)
     card.*place.member = hdf5::read_int_attribute(file, place.group, place.name);
   card.epochs = read_epochs(file);
   if (card.best_epoch < 0 || card.best_epoch > static_cast<std::int64_t>(card.epochs.size()))
-    throw Damage(fmt::format("the best epoch is {} of {}", card.best_epoch, card.epochs.size()));
+    throw Damage("the best epoch is {} of {}", card.best_epoch, card.epochs.size());
   for (const RatioPlace& place : ratio_places) {
     const auto ratios = read<double>(file, place.path, {ValidationRatio::tolerance_count});
     std::copy(ratios.begin(), ratios.end(), (card.*place.member).begin());
@@ -118,7 +119,7 @@ ModelCard read_card(hid_t file) {
   card.scenes = read_scenes(file);
   const std::string word = hdf5::read_text_attribute(file, "/training", "ending");
   const auto ending = std::find_if(endings.begin(), endings.end(), [&](const auto& e) { return word == e.second; });
-  if (ending == endings.end()) throw Damage(fmt::format("\"{}\" is not an ending of a training", word));
+  if (ending == endings.end()) throw Damage("\"{}\" is not an ending of a training", word);
   card.ending = ending->first;
   card.message = hdf5::read_text_attribute(file, "/training", "message");
   card.runs = read_training_runs(file);
@@ -143,14 +144,12 @@ std::optional<Checkpoint> read_checkpoint(hid_t file, std::size_t size) {
 
 hdf5::File open_model(const fs::path& path) {
   hdf5::File file = open_own(path, "models");
-  try {
+  reading(path, [&] {
     if (const std::string kind = kind_of(file); kind != "model")
-      throw FileError(fmt::format("{} holds the results of a {}, not a model: give the file of a job of kind \"train\"",
-                                  path.native(), kind));
+      throw FileError("{} holds the results of a {}, not a model: give the file of a job of kind \"train\"",
+                      path.native(), kind);
     check_version(file, path, model_schema_version);
-  } catch (const Hdf5Error& failure) {
-    throw damaged_error(path, damage_text(failure));
-  }
+  });
   return file;
 }
 
@@ -158,28 +157,22 @@ hdf5::File open_model(const fs::path& path) {
 
 bool is_model_file(const fs::path& path) {
   const hdf5::File file = open_own(path, "results");
-  try {
-    return kind_of(file) == "model";
-  } catch (const Hdf5Error& failure) {
-    throw damaged_error(path, damage_text(failure));
-  }
+  return reading(path, [&] { return kind_of(file) == "model"; });
 }
 
 StoredModel read_training(const fs::path& path) {
   const hdf5::File file = open_model(path);
-  try {
+  return reading(path, [&] {
     StoredModel stored{read_network(file.id(), path), read_card(file.id()), std::nullopt};
     stored.checkpoint = read_checkpoint(file.id(), stored.model->net.parameters().values().size());
     return stored;
-  } catch (const std::exception& failure) {
-    throw damaged_error(path, damage_text(failure));
-  }
+  });
 }
 
 StoredModel read_model(const fs::path& path) {
   StoredModel stored = read_training(path);
   if (stored.card.best_epoch > 0) return stored;
-  throw FileError(fmt::format("{} holds no trained model yet: no epoch of its training has ended", path.native()));
+  throw FileError("{} holds no trained model yet: no epoch of its training has ended", path.native());
 }
 
 }  // namespace rodsweep

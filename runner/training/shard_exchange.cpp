@@ -8,8 +8,8 @@
 namespace rodsweep {
 
 ShardExchange::ShardExchange(MPI_Comm comm, int shards, std::size_t size) : comm_(comm), count_(shards), size_(size) {
-  check_mpi(MPI_Comm_rank(comm, &rank_), "MPI_Comm_rank");
-  check_mpi(MPI_Comm_size(comm, &ranks_), "MPI_Comm_size");
+  rank_ = rank_in(comm);
+  ranks_ = ranks_in(comm);
   const std::size_t total = static_cast<std::size_t>(ranks_) + static_cast<std::size_t>(shards) * size;
   if (total > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw std::length_error("the gradients of all shards exceed the largest count of MPI: use fewer shards");

@@ -9,10 +9,9 @@
 
 #include "network/processor/model.hpp"
 #include "network/training/trainer.hpp"
-#include "runner/training/model_card.hpp"
+#include "runner/training/learning_sets.hpp"
 #include "runner/training/model_file.hpp"
 #include "runner/training/shard_exchange.hpp"
-#include "runner/training/training_data.hpp"
 
 namespace rodsweep {
 

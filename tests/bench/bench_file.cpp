@@ -67,7 +67,7 @@ void bench_extension(const fs::path& path) {
     const hdf5::File all = hdf5::open_file(path, H5F_ACC_RDWR);
     const auto tasks = static_cast<std::size_t>(plan.size());
     hdf5::write_all(all.id(), "/tasks/state", std::vector<std::uint8_t>(tasks, 1));
-    hdf5::write_texts(all.id(), "/tasks/outcome", std::vector<std::string>(tasks, "ok"));
+    hdf5::write_all(all.id(), "/tasks/outcome", std::vector<std::string>(tasks, "ok"));
   }
   const auto begin = Clock::now();
   const Extension extension(path, plan);

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "runner/measure/inputs.hpp"
+#include "runner/measure/plan_check.hpp"
 #include "tests/laws/key_places.hpp"
 #include "tests/runner/data_set_examples.hpp"
 

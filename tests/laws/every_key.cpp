@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <tuple>
 
-#include "runner/measure/inputs.hpp"
+#include "runner/measure/plan_check.hpp"
 #include "tests/laws/key_places.hpp"
 #include "tests/runner/data_set_examples.hpp"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "runner/keys/tables.hpp"
+#include "runner/keys/key.hpp"
 #include "runner/sweep/sobol.hpp"
 #include "solver/numbers/counter_random.hpp"
 #include "tests/laws/key_places.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "runner/plan/scene_spec.hpp"
+#include "runner/plan/plan.hpp"
 #include "runner/specs/scene_keys.hpp"
 #include "tests/runner/job_folder.hpp"
 #include "tests/solver/simulation.hpp"

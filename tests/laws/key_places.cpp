@@ -5,10 +5,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "runner/keys/tables.hpp"
-#include "runner/measure/inputs.hpp"
+#include "runner/keys/key.hpp"
+#include "runner/measure/plan_check.hpp"
 #include "runner/specs/guess_keys.hpp"
-#include "runner/text/key_path.hpp"
+#include "runner/text/job_error.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep::laws {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "runner/dispatch/channel.hpp"
 #include "runner/dispatch/master.hpp"
-#include "runner/dispatch/mpi_channel.hpp"
 #include "runner/dispatch/worker.hpp"
 #include "runner/mpi/mpi_session.hpp"
 

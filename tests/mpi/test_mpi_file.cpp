@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "runner/file/common_place.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
+#include "runner/file/opening.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/runner/file_examples.hpp"

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "runner/command/command_line.hpp"
-#include "runner/command/next_command.hpp"
+#include "runner/command/run_command.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "runner/command/sweep_tasks.hpp"
+#include "runner/command/sweep_opening.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;

@@ -26,7 +26,7 @@ std::vector<T> stored(const std::filesystem::path& path, const std::string& data
 }
 
 std::vector<std::string> stored_texts(const std::filesystem::path& path, const std::string& dataset) {
-  return hdf5::read_texts(hdf5::open_file(path, H5F_ACC_RDONLY).id(), dataset);
+  return hdf5::read_all<std::string>(hdf5::open_file(path, H5F_ACC_RDONLY).id(), dataset);
 }
 
 bool holds(const std::filesystem::path& path, const std::string& dataset) {
@@ -93,7 +93,7 @@ TEST_CASE("a record comes back from the file value by value, whatever the order 
     }
   }
   CHECK(hdf5::read_all<std::uint8_t>(read.id(), "/tasks/state") == std::vector<std::uint8_t>{1, 1, 0, 1, 0, 1});
-  CHECK(hdf5::read_texts(read.id(), "/tasks/outcome") ==
+  CHECK(hdf5::read_all<std::string>(read.id(), "/tasks/outcome") ==
         std::vector<std::string>{"ok", "ok", "pending", "ok", "pending", "ok"});
 }
 
@@ -125,8 +125,8 @@ TEST_CASE("rows that a task did not reach hold sentinels, not zeros") {
         },
         column.values(types));
   }
-  CHECK(hdf5::read_text_row(read.id(), "/tasks/outcome", 1) == "error");
-  CHECK(hdf5::read_text_row(read.id(), "/tasks/message", 1) == "the scene cannot be built");
+  CHECK(hdf5::RowDataset(read.id(), "/tasks/outcome").text(1) == "error");
+  CHECK(hdf5::RowDataset(read.id(), "/tasks/message").text(1) == "the scene cannot be built");
 }
 
 TEST_CASE("a task whose record cannot be written whole stays pending") {

@@ -11,7 +11,7 @@
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
-#include "runner/file/resume_check.hpp"
+#include "runner/file/stored_plan.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
@@ -137,7 +137,7 @@ TEST_CASE("a results file without one of its datasets is refused by name") {
 
 TEST_CASE("a state byte that is neither 0 nor 1 is damage") {
   const FullFile made(2);
-  hdf5::write_row<std::uint8_t>(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/state", 4, 7);
+  hdf5::RowDataset(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/state").put<std::uint8_t>(4, 7);
   CHECK_THAT(inspect_refusal(made.path),
              Contains("/tasks/state of task 4 is 7; must be 0 or 1") && Contains("--resume"));
   const auto file = ResultsFile::resume(made.path, made.plan, test_provenance(), MPI_COMM_SELF);
@@ -148,8 +148,8 @@ TEST_CASE("a state byte that is neither 0 nor 1 is damage") {
 
 TEST_CASE("frames whose rows no number can count are damage") {
   const FullFile made(2);
-  hdf5::write_row<std::int64_t>(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/frames", 0,
-                                std::numeric_limits<std::int64_t>::max());
+  hdf5::RowDataset(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/frames")
+      .put<std::int64_t>(0, std::numeric_limits<std::int64_t>::max());
   CHECK_THAT(message_of<FileError>([&] { verify(made.path); }), Contains("a task has rows outside /trajectories"));
 }
 
@@ -192,9 +192,9 @@ TEST_CASE("a job that was changed in the file is damage") {
   const FullFile made(3);
   {
     const hdf5::File file = hdf5::open_file(made.path, H5F_ACC_RDWR);
-    std::string text = hdf5::read_texts(file.id(), "/job/text").at(0);
+    std::string text = hdf5::read_all<std::string>(file.id(), "/job/text").at(0);
     text.at(text.find("\"seed\": ") + 8) = '7';
-    hdf5::write_texts(file.id(), "/job/text", {text});
+    hdf5::write_all(file.id(), "/job/text", {text});
   }
   CHECK_THAT(inspect_refusal(made.path), Contains("its job does not match its checksum (/job/text)"));
   CHECK_THAT(resume_refusal(made.path, made.plan), Contains("its job does not match its checksum"));
@@ -226,7 +226,7 @@ TEST_CASE("resume with a program that expands the job differently is refused wit
     CHECK_THAT(resume_refusal(made.path, made.plan),
                Contains("scene.length_m of task 4 is") &&
                    Contains(is_known ? "the revision is the same" : "expands the job differently"));
-    hdf5::write_text_row(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/revision", 0, "0123456789ab");
+    hdf5::RowDataset(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/revision").put_text(0, "0123456789ab");
     CHECK_THAT(resume_refusal(made.path, made.plan),
                Contains("expands the job differently (revision 0123456789ab): scene.length_m of task 4 is"));
   }

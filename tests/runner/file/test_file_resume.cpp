@@ -121,8 +121,8 @@ TEST_CASE("resuming a complete file changes none of its bytes, so jobs that read
 
 TEST_CASE("a sweep can be resumed more often than /runs has rows, and says so") {
   const FullFile made(0);
-  hdf5::write_texts(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/begin",
-                    std::vector<std::string>(run_rows, "2025-01-01T00:00:00Z"));
+  hdf5::write_all(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/begin",
+                  std::vector<std::string>(run_rows, "2025-01-01T00:00:00Z"));
   ResultsFile file = resume(made.path, made.plan);
   CHECK(file.run_index() == run_rows - 1);
   CHECK_THAT(file.note(), Contains("has 64 rows") && Contains("/runs"));
@@ -186,7 +186,8 @@ TEST_CASE("verifying shows that it lives, and stops when told to, with the file 
 
 TEST_CASE("runs with time to verify a part verify all in the end") {
   const FullFile made(6);
-  hdf5::write_row<double>(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/steps/joint_gap", 4, 12345);  // of task 1
+  hdf5::RowDataset(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/steps/joint_gap")
+      .put<double>(4, 12345);  // of task 1
   int runs = 0;
   for (bool found = false; !found; ++runs) {
     REQUIRE(runs < 12);

@@ -123,7 +123,7 @@ TEST_CASE("texts are visited one by one, across blocks") {
   hdf5::create_dataset(file.id(), "/x", hdf5::text_type(8).id(), {rows});
   std::vector<std::string> texts(rows, "same");
   texts.front() = "first", texts.back() = "last";
-  hdf5::write_texts(file.id(), "/x", texts);
+  hdf5::write_all(file.id(), "/x", texts);
   std::vector<std::string> seen;
   hdf5::visit_texts(file.id(), "/x", rows, [&](std::size_t row, const std::string& text) {
     CHECK(row == seen.size());

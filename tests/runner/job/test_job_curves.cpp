@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "runner/measure/factor_check.hpp"
-#include "runner/plan/scene_spec.hpp"
+#include "runner/measure/plan_check.hpp"
+#include "runner/plan/plan.hpp"
 #include "tests/runner/job_folder.hpp"
 
 namespace rodsweep {

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runner/keys/tables.hpp"
+#include "runner/keys/key.hpp"
 #include "runner/specs/guess_keys.hpp"
-#include "runner/text/nearest.hpp"
+#include "runner/text/words.hpp"
 #include "solver/numbers/counter_random.hpp"
 
 using namespace rodsweep;

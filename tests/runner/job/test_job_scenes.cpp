@@ -3,8 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "runner/measure/factor_check.hpp"
-#include "runner/measure/guess_check.hpp"
+#include "runner/measure/plan_check.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;

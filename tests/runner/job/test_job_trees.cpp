@@ -3,7 +3,7 @@
 #include <string>
 
 #include "runner/inputs/skeleton_file.hpp"
-#include "runner/measure/guess_check.hpp"
+#include "runner/measure/plan_check.hpp"
 #include "tests/runner/job_folder.hpp"
 
 namespace rodsweep {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "runner/keys/job_schema.hpp"
-#include "runner/keys/tables.hpp"
+#include "runner/keys/key.hpp"
 #include "runner/specs/guess_keys.hpp"
 #include "tests/runner/job_examples.hpp"
 

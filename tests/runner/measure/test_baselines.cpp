@@ -3,8 +3,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "runner/measure/guess_check.hpp"
-#include "runner/measure/training_sets.hpp"
+#include "runner/measure/plan_check.hpp"
+#include "runner/measure/shared_inputs.hpp"
 #include "runner/training/model_file.hpp"
 #include "tests/runner/data_set_examples.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runner/measure/host_memory.hpp"
-#include "runner/mpi/control_groups.hpp"
+#include "runner/mpi/mpi_session.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;

@@ -5,7 +5,6 @@
 #include "runner/command/sweep_summary.hpp"
 #include "runner/terminal/formats.hpp"
 #include "runner/terminal/progress.hpp"
-#include "runner/terminal/progress_line.hpp"
 #include "solver/plugin/printable.hpp"
 
 using namespace rodsweep;

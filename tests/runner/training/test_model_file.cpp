@@ -251,7 +251,7 @@ TEST_CASE("settings and cards that cannot be are refused") {
   CHECK_THAT(refusal_after([](hid_t file) {
                H5Ldelete(file, "/model/settings", H5P_DEFAULT);
                hdf5::create_dataset(file, "/model/settings", hdf5::text_type(20).id(), {1});
-               hdf5::write_texts(file, "/model/settings", {R"({"latent": 100000})"});
+               hdf5::write_all(file, "/model/settings", {R"({"latent": 100000})"});
              }),
              Contains("/model/settings.latent: 100000 is not allowed"));
   CHECK_THAT(refusal_after([](hid_t file) { set_attribute(file, "/training", "ending", "tired"); }),
