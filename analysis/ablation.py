@@ -97,7 +97,7 @@ def main():
                               f"{options.models}: name the base model with --base")
         panels = panels_of(models, base)
         tolerances = commandline.chosen_tolerances(file, options)
-        ratios = [measures.cg_ratios(file, shown.sims, newton).ratio for newton in ("first", "all")]
+        ratios = [measures.cg_counts(file, shown.sims, newton).ratio for newton in ("first", "all")]
         first, every = (intervals.mean(ratio, shown.sims.sample) for ratio in ratios)
         print("\n".join(table(shown, models, base, panels, ratios, (first, every), tolerances)) + "\n")
         ratio = first if shown.newton == "first" else every

@@ -49,7 +49,7 @@ def estimates(shown, index):
     """(ratio [guess, tolerance], time [us] per segment and solve of guesses [guess] and of CG from zero) of
     simulations."""
     file, sims = shown.file, shown.sims.subset(index)
-    ratio = intervals.mean(measures.cg_ratios(file, sims, shown.newton).ratio, sims.sample)
+    ratio = intervals.mean(measures.cg_counts(file, sims, shown.newton).ratio, sims.sample)
     spent = timings.times(file, sims)[shown.newton]
     segments = file.results("segments", sims.any_task)[:, None]
     guess = intervals.median(spent.guess_s / spent.solves / segments * 1e6, sims.sample)

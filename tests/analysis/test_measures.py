@@ -25,16 +25,16 @@ class Varied(synthetic.Plant):
 class Ratios(Folder):
     def test_planted_qualities_come_back_at_the_first_newton_iteration(self):
         file, sims = self.simulations()
-        ratios = measures.cg_ratios(file, sims, "first")
+        ratios = measures.cg_counts(file, sims, "first")
         self.assertEqual(ratios.ratio.shape, (24, 4, 8))
         for g, quality in enumerate((1, 0.5, 0.25, 0.1)):
             np.testing.assert_allclose(ratios.ratio[:, g], quality, rtol=0.01)  # iterations are whole numbers
         ten_segments = file.parameter("scene.segments").values[sims.any_task] == 10
-        np.testing.assert_allclose(ratios.iterations_per_solve[ten_segments, 0, 0], 220)
+        np.testing.assert_allclose(ratios.per_solve[ten_segments, 0, 0], 220)
 
     def test_all_newton_iterations_are_a_ratio_of_sums(self):
         file, sims = self.simulations(plant=Varied(), newton=3)
-        ratios = measures.cg_ratios(file, sims, "all")
+        ratios = measures.cg_counts(file, sims, "all")
         draws = sims.sample
         np.testing.assert_allclose(ratios.ratio[:, 1, 0], (0.2 + 0.1 * draws + 0.8 + 0.8) / 3)
         self.assertTrue(np.isnan(ratios.solves).all())
@@ -49,7 +49,7 @@ class Ratios(Folder):
         plant = synthetic.Plant()
         plant.reached = lambda guess, tolerance, newton, segments, draw: guess != "previous" or tolerance > 1e-3
         file, sims = self.simulations(plant=plant, steps=5, newton=3)
-        first, every = (measures.cg_ratios(file, sims, newton).unreached for newton in ("first", "all"))
+        first, every = (measures.cg_counts(file, sims, newton).unreached for newton in ("first", "all"))
         np.testing.assert_array_equal(first[0, 1], [0, 0, 5, 5, 5, 5, 5, 5])
         np.testing.assert_array_equal(every[0, 1, 2], 15)
         np.testing.assert_array_equal(first[:, [0, 2, 3]], 0)
@@ -58,7 +58,7 @@ class Ratios(Folder):
         plant = synthetic.Plant()
         plant.zero_iterations = lambda segments, tolerance: 0 if segments == 10 else 50
         file, sims = self.simulations(plant=plant)
-        ratio = measures.cg_ratios(file, sims, "first").ratio
+        ratio = measures.cg_counts(file, sims, "first").ratio
         none = file.parameter("scene.segments").values[sims.any_task] == 10
         self.assertTrue(np.isnan(ratio[none]).all())
         self.assertTrue(np.isfinite(ratio[~none]).all())
@@ -66,7 +66,7 @@ class Ratios(Folder):
     def test_summaries_without_rows_have_ratios_but_no_times(self):
         file, sims = self.simulations(solves=False)
         self.assertFalse(timings.timed(file))
-        np.testing.assert_allclose(measures.cg_ratios(file, sims, "first").ratio[:, 1], 0.5, rtol=5e-3)
+        np.testing.assert_allclose(measures.cg_counts(file, sims, "first").ratio[:, 1], 0.5, rtol=5e-3)
 
 
 class ClosedLoop(Folder):
@@ -74,7 +74,7 @@ class ClosedLoop(Folder):
         file, sims = self.simulations(closed_loop=True, plant=Varied())
         self.assertTrue(sims.closed_loop)
         self.assertEqual((len(sims), file.task_count), (24, 96))
-        ratio = measures.cg_ratios(file, sims, "first").ratio
+        ratio = measures.cg_counts(file, sims, "first").ratio
         np.testing.assert_allclose(ratio[:, 2, 3], 0.2 + 0.1 * sims.sample)
         np.testing.assert_allclose(ratio[:, 0], 1)
 
@@ -83,14 +83,14 @@ class ClosedLoop(Folder):
         for closed_loop in (False, True):
             file, sims = self.simulations(closed_loop=closed_loop)
             by_newton = timings.times(file, sims)
-            found.append([measures.cg_ratios(file, sims, "all").ratio, *timings.speedups(by_newton, "first").values(),
+            found.append([measures.cg_counts(file, sims, "all").ratio, *timings.speedups(by_newton, "first").values(),
                           *timings.speedups(by_newton, "all", "direct").values()])
         for paired, closed in zip(*found):
             np.testing.assert_allclose(closed, paired)
 
     def test_without_its_zero_task_a_point_has_no_ratio_and_without_one_guess_only_that_one_lacks(self):
         file, sims = self.simulations(closed_loop=True, failed={0: "diverged", 5: "diverged"})
-        ratio = measures.cg_ratios(file, sims, "first").ratio
+        ratio = measures.cg_counts(file, sims, "first").ratio
         self.assertTrue(np.isnan(ratio[0]).all())
         np.testing.assert_array_equal(np.isnan(ratio[1, :, 0]), [False, True, False, False])
         self.assertTrue(np.isfinite(ratio[2:]).all())

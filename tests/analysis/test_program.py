@@ -96,7 +96,7 @@ class Program(unittest.TestCase):
     def test_ratios_are_those_of_the_rows_and_of_the_file(self):
         with SweepFile(self.run_job("paired")) as file:
             sims = everything(file)
-            found = {newton: measures.cg_ratios(file, sims, newton).ratio for newton in ("first", "all")}
+            found = {newton: measures.cg_counts(file, sims, newton).ratio for newton in ("first", "all")}
             iterations, newton = file.h5["solves/iterations"][:].astype(float), file.h5["solves/newton"][:]
             for task in range(file.task_count):
                 rows = slice(file.first_solve[task], file.first_solve[task] + file.solves[task])
@@ -138,7 +138,7 @@ class Program(unittest.TestCase):
             sims = everything(file)
             self.assertTrue(sims.closed_loop)
             self.assertEqual(sims.task.shape, (6, 4))
-            ratio = measures.cg_ratios(file, sims, "first").ratio
+            ratio = measures.cg_counts(file, sims, "first").ratio
             self.assertTrue(np.isfinite(ratio[..., :4]).all())
             np.testing.assert_array_equal(ratio[:, 0, :4], 1)
         self.assertEqual(len(self.script("spatial.py", path).split()), 6)
@@ -186,7 +186,7 @@ class Program(unittest.TestCase):
     def test_a_summary_has_the_ratios_of_the_full_record(self):
         with SweepFile(self.run_job("paired")) as full, \
                 SweepFile(self.run_job("short", record={"solves": "summary"})) as short:
-            ratios = [measures.cg_ratios(file, everything(file), "first").ratio for file in (full, short)]
+            ratios = [measures.cg_counts(file, everything(file), "first").ratio for file in (full, short)]
             np.testing.assert_array_equal(*ratios)
             self.assertFalse(timings.timed(short))
         self.assertEqual(len(self.script("spatial.py", short.path).split()), 2)

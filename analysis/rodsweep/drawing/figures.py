@@ -18,7 +18,7 @@ FOUR_CURVES = {"ratio": "CG ratio", "share": "time of the guess ÷ time of its C
 
 def ratio_figure(study, tolerances):
     """CG iterations over those from zero: a panel per tolerance, a line per guess."""
-    ratios = measures.cg_ratios(study.file, study.sims, study.newton)
+    ratios = measures.cg_counts(study.file, study.sims, study.newton)
     estimates = [[intervals.mean(ratios.ratio[rows], study.sims.sample[rows]) for rows in points.index]
                  for points in study.points]
     lines = study.lines()
@@ -107,7 +107,7 @@ def four_curves_figure(study, by_newton):
         return None
     file, part = study.file, by_newton[study.newton]
     timed = timings.timed_rung(file)[study.sims.any_task]
-    ratios = measures.cg_ratios(file, study.sims, study.newton).ratio
+    ratios = measures.cg_counts(file, study.sims, study.newton).ratio
     speedups = timings.speedups(by_newton, study.newton)
     curves = {"ratio": ratios[np.arange(len(timed)), :, timed], "share": measures.quotient(part.guess_s, part.cg_s),
               "guess_cg": speedups["guess_cg"], "step": speedups["step"]}

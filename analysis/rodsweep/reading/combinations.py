@@ -108,7 +108,7 @@ class _Measured:
         self.products, _ = self._per_solve("matvecs", newton, solves)
 
     def _per_solve(self, counted, newton, solves):
-        ratios = measures.cg_sums(self.file, self.sims, newton, counted)
+        ratios = measures.cg_counts(self.file, self.sims, newton, counted)
         return measures.quotient(ratios.own, solves[..., None]), ratios.unreached
 
     def _direct_us(self, times):

@@ -224,7 +224,7 @@ class Comparison:
     def _of_guess(self, file, tasks, guess):
         """Without tasks in which a solve missed the tolerance."""
         found = self._of_solves(file, tasks, ["guess_s", "cg_s"], guess)
-        return np.where(unconverged.counts(file).missed[tasks, guess] > 0, np.nan, found)
+        return np.where(unconverged.solves(file, "missed")[tasks, guess] > 0, np.nan, found)
 
     @staticmethod
     def _of_solves(file, tasks, names, guess=None):
