@@ -78,10 +78,9 @@ SEVERAL = "several at once"
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES)
+    made = study.parser(__doc__, EXAMPLES)
     made.add_argument("models", metavar="MODELS", help="folder of the model files")
     made.add_argument("--base", default="base", help="name of the base model (default: base)")
-    study.add_figure_arguments(made)
     return made.parse_args()
 
 

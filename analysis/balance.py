@@ -35,14 +35,8 @@ class Line:
     lacking: list        # momentum residual
 
 
-def arguments():
-    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
-    study.add_figure_arguments(made)
-    return made.parse_args()
-
-
 def main():
-    options = arguments()
+    options = study.parser(__doc__, EXAMPLES, tolerances=None, newton=False).parse_args()
     with SweepFile(options.file) as file:
         shown = study.of_tasks(file, options)
         balance = file.parameters.get("time.balance")

@@ -32,8 +32,7 @@ COMPARED = (combinations.CLASSICAL, combinations.ZERO, combinations.DIRECT)
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES, tolerances="1e-2,1e-3")
-    study.add_figure_arguments(made)
+    made = study.parser(__doc__, EXAMPLES, tolerances="1e-2,1e-3")
     made.add_argument("--x", metavar="KEY", help="parameter along x (default: scene.nodes_x of a lattice, else "
                                                  "scene.segments); the axis shows joints")
     return made.parse_args()

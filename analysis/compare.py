@@ -13,7 +13,6 @@ differences: medians over the tasks, and the median of B / A, the quotient of ea
 tolerance; --csv and --json have all.
 """
 
-import argparse
 import csv
 import json
 import math
@@ -36,8 +35,7 @@ MOST_KEYS, MOST_CHANGES, LONGEST = 20, 10, 60
 
 
 def arguments():
-    made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made = commandline.plain_parser(__doc__, EXAMPLES)
     made.add_argument("file", metavar="FILE", help="results file (HDF5)")
     made.add_argument("other", metavar="OTHER", help="second results file (HDF5)")
     made.add_argument("--by", choices=comparison.BY, default="everything", help="how to match tasks")

@@ -24,14 +24,8 @@ EXAMPLES = """examples:
 OTHERS = ("copingnet", "knn", "oracle", "deflation")
 
 
-def arguments():
-    made = commandline.parser(__doc__, EXAMPLES)
-    study.add_figure_arguments(made)
-    return made.parse_args()
-
-
 def main():
-    options = arguments()
+    options = study.parser(__doc__, EXAMPLES).parse_args()
     with SweepFile(options.file) as file:
         shown = study.of_guesses(file, options)
         if not timings.timed(file):

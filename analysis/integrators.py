@@ -23,8 +23,7 @@ VARIED = ("time.step_s", "time.steps", "time.integrator", "time.balance")
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
-    study.add_figure_arguments(made)
+    made = study.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     made.add_argument("--columns", metavar="KEY", default="scene.youngs_modulus_pa",
                       help="a column per value of this parameter (default: scene.youngs_modulus_pa)")
     made.add_argument("--energy-step", metavar="S", type=float, help="step of the lower row (default: the largest)")

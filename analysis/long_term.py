@@ -33,8 +33,7 @@ DECADES = 8   # of a logarithmic axis, below the largest value of the methods th
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
-    study.add_figure_arguments(made)
+    made = study.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     made.add_argument("--after", metavar="STEP", type=int,
                       help="first step of the fit of the drift (default: a tenth of the run)")
     made.add_argument("--log-time", action="store_true", help="logarithmic time axis")

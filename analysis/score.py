@@ -18,7 +18,6 @@ learned settings that contains the intervals of all trainings. The last table ha
 setting of this kind reached the error on the tuning draws. An error in parentheses is above its level on the test draws.
 """
 
-import argparse
 import glob
 import json
 import os
@@ -41,8 +40,7 @@ JOBS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "jobs", "s
 
 
 def arguments():
-    made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made = commandline.plain_parser(__doc__, EXAMPLES)
     made.add_argument("files", nargs="+", metavar="FILE",
                       help=f"results of a tuning job, NAME{ENDING}; or a guess in Python and jobs")
     made.add_argument("--jobs", action="store_true",

@@ -34,10 +34,11 @@ class TaskColumn:
     result: bool = False    # not known before the task is done
     guess: str = ""
     by_tolerance: bool = False
+    words: tuple = ()       # all texts that it can hold, if known
 
 
 class TaskColumns:
-    """`names`: names of all columns, in order."""
+    """A mapping of names to columns for conditions.parse(), with any tolerance. `names`: of all columns, in order."""
 
     def __init__(self, file):
         self.file = file
@@ -45,12 +46,22 @@ class TaskColumns:
         self.closed_loop = bool((file.own_guess >= 0).any())
         self.columns = {}
         self._add(TaskColumn("task", meaning="number of the task: its row in /tasks", whole=True))
-        self._add(TaskColumn("state", meaning='"done" or "pending"', numeric=False, result=True))
+        self._add(TaskColumn("state", meaning='"done" or "pending"', numeric=False, result=True,
+                             words=("done", "pending")))
         self._add_datasets("/tasks")
         for _, parameter in sorted(file.parameters.items()):
             self._add_parameter(parameter)
         self._add_datasets("/timing/tasks")
         self.names = list(self.columns)
+
+    def __iter__(self):
+        return iter(self.names)
+
+    def __contains__(self, name):
+        try:
+            return bool(self[name])
+        except KeyNotFound:
+            return False
 
     def __getitem__(self, name):
         """The column of a name, which may end in @TOLERANCE. Raises KeyNotFound if there is none."""
@@ -68,11 +79,7 @@ class TaskColumns:
 
     def condition(self, text):
         """A condition on a column of this table."""
-        return self.checked(conditions.parse(text, self.known(), ALL_BY))
-
-    def known(self):
-        """The columns for conditions.parse()."""
-        return _Known(self)
+        return self.checked(conditions.parse(text, self, ALL_BY))
 
     def checked(self, condition):
         """The condition. Raises KeyNotFound if none of the tasks can meet it, whatever their results are."""
@@ -148,10 +155,11 @@ class TaskColumns:
 
     def _add_dataset(self, name, column):
         made = TaskColumn(name, column.path, (), without_one(column.unit), column.meaning, column.dtype.kind in "iuf",
-                          column.dtype.kind in "iu", result=not column.planned)
+                          column.dtype.kind in "iu", result=not column.planned,
+                          words=tuple(constants.OUTCOMES) if name == "outcome" else ())
         if name == "own_guess":
             made = replace(made, meaning="the guess that advances the rods; none: another method does", numeric=False,
-                           whole=False)
+                           whole=False, words=tuple(self.file.guesses))
         if not column.axes:
             self._add(made)
         elif "guess" in column.axes:
@@ -163,25 +171,3 @@ class TaskColumns:
 
 def without_one(unit):
     return "" if unit == "1" else unit
-
-
-class _Known:
-    """The columns for conditions.parse(): with the words that they can hold, and with any tolerance."""
-
-    def __init__(self, table):
-        self.table = table
-        self.words = {"state": ("done", "pending"), "outcome": tuple(constants.OUTCOMES),
-                      "own_guess": tuple(table.file.guesses)}
-
-    def __iter__(self):
-        return iter(self.table.names)
-
-    def __contains__(self, name):
-        try:
-            self.table[name]
-        except KeyNotFound:
-            return False
-        return True
-
-    def __getitem__(self, name):
-        return conditions.Column(self.table[name].numeric, self.words.get(name, ()))

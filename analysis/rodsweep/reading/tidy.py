@@ -137,7 +137,7 @@ class Tidy:
         of_rows = {name: conditions.Column(self.dtype(name).kind in "iuf",
                                            tuple(self.file.guesses) if name == "guess" else ())
                    for name in self.names if self._in_rows(name) or name in conditions.OF_ROWS}
-        made = conditions.parse(text, ChainMap(of_rows, self.of_tasks.known()), ALL_BY)
+        made = conditions.parse(text, ChainMap(of_rows, self.of_tasks), ALL_BY)
         if made.column not in of_rows:
             return self.of_tasks.checked(made)
         if made.column == "guess":
