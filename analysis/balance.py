@@ -12,7 +12,6 @@ the simulation (record.trajectory_every) and /solves (record.solves "all").
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, study, style
 from rodsweep.reading import accuracy, commandline, intervals, measures, texts
@@ -133,10 +132,7 @@ def figure(shown, panels):
             axes.plot([float(line.second_ms[k].value) for k in kept], [float(line.error[k].value) for k in kept],
                       **looks[kind].line(), linewidth=0.9, markersize=3)
         axes.set(xscale="log", yscale="log")
-        ticks = layout.log_ticks(*axes.get_xlim())
-        axes.xaxis.set_major_locator(FixedLocator(ticks))
-        axes.xaxis.set_minor_locator(NullLocator())
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
+        layout.set_ticks(axes.xaxis, layout.log_ticks(*axes.get_xlim()))
         page.title(axes, title)
         if column == 0:
             axes.set_ylabel("error / size of the scene", labelpad=2)

@@ -81,10 +81,9 @@ def figure(shown, panels, found, tolerances):
             y, x = ratio[:, t].value, guess.value
             for g in lines:
                 look = shown.style(g)
-                one = slice(g, g + 1)
-                style.errorbar(axes, x[one], y[one], xerr=style.whiskers(x[one], guess[one].low, guess[one].high),
-                               yerr=style.whiskers(y[one], ratio[one, t].low, ratio[one, t].high), **style.WHISKERS,
-                               **look.line())
+                time = guess[g:g + 1]
+                style.errorbar(axes, time.value, [ratio[g, t]], xerr=style.whiskers(time.value, time.low, time.high),
+                               **style.WHISKERS, **look.line())
             axes.set(xscale="log", ylim=(0, None))
             there = [g for g in lines if x[g] > 0 and np.isfinite(y[g])]
             best = np.array(there, dtype=int)[unbeaten(x[there], y[there])]

@@ -9,7 +9,6 @@ column. The file needs trajectories (record.trajectory_every) and a grid of time
 """
 
 import numpy as np
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, study, style
 from rodsweep.reading import accuracy, commandline, intervals, measures, texts
@@ -129,18 +128,14 @@ def figure(shown, errors, energy_step):
     for column, (title, of) in enumerate(errors.items()):
         upper, lower = page.axes[0][column], page.axes[1][column]
         for which, line in of.items():
-            x, estimates = [entry[0] for entry in line], [entry[1] for entry in line]
-            y, low, high = (np.array([float(getattr(e, part)) for e in estimates]) for part in ("value", "low", "high"))
-            style.errorbar(upper, x, y, yerr=style.whiskers(y, low, high), **looks[which].line(), linewidth=0.9,
-                           markersize=2.8, elinewidth=0.5)
+            sizes, estimates, _ = zip(*line)
+            style.errorbar(upper, sizes, estimates, **looks[which].line(), linewidth=0.9, markersize=2.8, elinewidth=0.5)
             here = [tasks[0] for of_size, _, tasks in line if np.isclose(of_size, size)]
             if here:
                 lower.plot(*energies(shown.file, here[0]), color=looks[which].colour, linewidth=0.8)
         upper.set(xscale="log", yscale="log" if logarithmic else "linear")
         steps = sorted({entry[0] for line in of.values() for entry in line})
-        upper.xaxis.set_major_locator(FixedLocator(steps[::-2][::-1]))
-        upper.xaxis.set_minor_locator(NullLocator())
-        upper.xaxis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
+        layout.set_ticks(upper.xaxis, steps[::-2][::-1])
         for axes in (upper, lower):
             page.title(axes, title)
         page.label_y(upper, column, "error / size of the rod")
