@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import accuracy, commandline, intervals, measures, texts
+from rodsweep.reading import accuracy, commandline, intervals, texts
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -79,7 +79,7 @@ def _scenes(file, tasks):
 def _line(file, tasks, kind):
     step_s, balance = file.parameters["time.step_s"].values, file.parameters["time.balance"].values[tasks]
     finest = step_s[tasks].min()
-    exact = {int(file.sample[task]): accuracy.positions(file, task)
+    exact = {int(file.sample[task]): accuracy.frames(file, task)
              for task in tasks[(balance == 1) & (step_s[tasks] == finest)]}
     line = Line([], [], [], [], [])
     for size in sorted(set(step_s[tasks].tolist()), reverse=True):
@@ -88,17 +88,13 @@ def _line(file, tasks, kind):
         is_reference = kind == 1 and size == finest
         line.step_s.append(size)
         line.second_ms.append(intervals.median([1e3 * accuracy.step_s(file, task) / size for task in of], draws))
+        apart = [accuracy.distances(accuracy.frames(file, task), exact[int(file.sample[task])]) for task in of]
         line.error.append(None if is_reference else intervals.median(
-            [_error(accuracy.positions(file, task), exact[int(file.sample[task])]) for task in of], draws))
+            [frames[-1] if len(frames) else np.nan for frames in apart], draws))
         line.iterations.append(intervals.mean([_steps(file, task, "newton_iterations").mean() for task in of], draws))
         line.lacking.append(intervals.median(
             [np.fmax.reduce(_steps(file, task, "momentum_residual")[1:], initial=np.nan) for task in of], draws))
     return line
-
-
-def _error(found, exact):
-    apart = np.square(found[-1] - exact[-1]).sum(axis=1)
-    return float(measures.quotient(np.sqrt(apart.mean()), np.linalg.norm(np.ptp(exact[0], axis=0))))
 
 
 def _steps(file, task, name):

@@ -13,7 +13,6 @@ differences: medians over the tasks, and the median of B / A, the quotient of ea
 tolerance; --csv and --json have all.
 """
 
-import csv
 import json
 import math
 import sys
@@ -176,9 +175,7 @@ def task_rows(found):
 def write_csv(found, tasks):
     names = ("task_a", "task_b", "outcome_a", "outcome_b", "columns") if tasks else \
         ("guess", "tolerance", "a", "b", "difference", "low", "high", "tasks")
-    out = csv.DictWriter(sys.stdout, names, lineterminator="\n")
-    out.writeheader()
-    out.writerows(task_rows(found) if tasks else ratio_rows(found))
+    texts.write_csv(sys.stdout, names, task_rows(found) if tasks else ratio_rows(found))
 
 
 def finite(value):

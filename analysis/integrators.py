@@ -56,7 +56,7 @@ def lines(file, tasks):
         best = min(rows, key=lambda row: (step[tasks[row]], name(file, tasks[row]) != "bdf2"))
         exact = accuracy.frames(file, tasks[best])
         for row in rows:
-            apart[row] = np.nan if row == best else distance(accuracy.frames(file, tasks[row]), exact)
+            apart[row] = np.nan if row == best else error(accuracy.frames(file, tasks[row]), exact)
     found = {}
     for which, size in sorted({(name(file, task), step[task]) for task in tasks}, key=lambda key: (key[0], -key[1])):
         rows = [row for row, task in enumerate(tasks) if (name(file, task), step[task]) == (which, size)
@@ -77,13 +77,9 @@ def name(file, task):
     return str(value("time.integrator", "euler")) + (" in balance" if value("time.balance", 0) == 1 else "")
 
 
-def distance(path, exact):
-    start = exact[0.0]
-    common = [time for time in path if time > 0 and time in exact]
-    if not common:
-        return np.nan
-    squares = [np.square(path[time] - exact[time]).sum(axis=1).mean() for time in common]
-    return float(measures.quotient(np.sqrt(np.mean(squares)), np.linalg.norm(np.ptp(start, axis=0))))
+def error(path, exact):
+    found = accuracy.distances(path, exact)
+    return np.sqrt(np.square(found).mean()) if len(found) else np.nan
 
 
 def table(errors):

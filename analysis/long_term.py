@@ -56,7 +56,8 @@ def main():
             raise KeyNotFound(f"{file.path} has no recorded step in the chosen simulations: {shown.census.text()}")
         series = [methods(shown, panel) for panel in panels]
         if options.csv:
-            history_table.write_csv(sys.stdout, panels, series, found, shown.sims, file.ok)
+            texts.write_csv(sys.stdout, history_table.COLUMNS,
+                            history_table.records(panels, series, found, shown.sims, file.ok))
             return
         print("\n".join(history_table.lines(panels, series, found, shown.sims, file.ok, begin)) + "\n")
         study.save(file, options, {"long-term": figure(shown, panels, series, found, options)},

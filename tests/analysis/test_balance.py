@@ -27,6 +27,7 @@ class Balance(running.Scripts):
             position[:, -1, :, 0] += np.resize(planted, count)[:, None]
             h5["trajectories/position_m"] = position.reshape(-1, 3)
             h5["trajectories/first_row"] = np.arange(count * FRAMES).reshape(count, FRAMES) * SEGMENTS
+            h5["trajectories/time_s"] = np.tile([0, 0.5, 1.0], (count, 1))
             lacking = np.tile([1.0, 0.2, 0.3, 0.1], count)    # the value of the first step does not count
             h5["steps/momentum_residual"] = lacking
 

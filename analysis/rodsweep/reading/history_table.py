@@ -47,7 +47,3 @@ def lines(panels, series, found, sims, ok, begin):
                f"{begin} on, median over simulations that did not fail [95 % interval]. After steps: median number of "
                "steps of the others.", ""]
     return heading + texts.aligned(rows)
-
-
-def write_csv(out, panels, series, found, sims, ok):
-    texts.write_csv(out, COLUMNS, records(panels, series, found, sims, ok))

@@ -8,17 +8,21 @@ from scipy.spatial import cKDTree
 NEAR = 1e-3   # points this close, as a share of the shortest segment's length, are one
 
 
+def meeting(points, rod, reach):
+    """(number of places, the place of each point): points of one rod that are at most `reach` apart are one place."""
+    near = cKDTree(points).query_pairs(reach, output_type="ndarray").reshape(-1, 2)
+    near = near[rod[near[:, 0]] == rod[near[:, 1]]]
+    links = coo_matrix((np.ones(len(near)), tuple(near.T)), shape=(len(points), len(points)))
+    return connected_components(links, directed=False)
+
+
 def pairs(trajectory):
     """[joint, 2] numbers of segments of one rod that share an end or the middle in the first frame. If several meet,
     all are joined to the first of them."""
     points = np.concatenate([*trajectory.ends(0), trajectory.centres(0)])
     count = len(trajectory.length)
     near = NEAR * trajectory.length[trajectory.length > 0].min(initial=np.inf)
-    close = cKDTree(points).query_pairs(near if np.isfinite(near) else 0, output_type="ndarray")
-    a, b = close.T % count if len(close) else np.empty((2, 0), dtype=int)
-    same = trajectory.rod[a] == trajectory.rod[b]
-    links = coo_matrix((np.ones(same.sum()), tuple(close[same].T)), shape=(len(points), len(points)))
-    point = connected_components(links, directed=False)[1]
+    _, point = meeting(points, np.tile(trajectory.rod, 3), near if np.isfinite(near) else 0)
     segment = np.arange(len(points)) % count
     order = np.lexsort((segment, point))
     first = np.r_[True, np.diff(point[order]) > 0]
