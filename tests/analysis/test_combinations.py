@@ -1,7 +1,5 @@
 """combinations.py: the cheapest combination of preconditioner and guess of each kind, and its speedup."""
 
-import unittest
-
 import h5py
 import numpy as np
 
@@ -91,7 +89,3 @@ class Combinations(running.Scripts):
     def test_without_what_it_needs_it_says_so(self):
         self.write(guesses=("previous", "quadratic"))
         self.refused("combinations.py", "sweep.h5", "--x", "scene.segments", words="zero guess")
-
-
-if __name__ == "__main__":
-    unittest.main()

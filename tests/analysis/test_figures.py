@@ -229,7 +229,3 @@ class Styles(unittest.TestCase):
                                   ("scene.damping_per_s", "1/s", "damping (1/s)"),
                                   ("scene.segments", "", "number of segments N")):
             self.assertEqual(texts.parameter_label(name, unit), label)
-
-
-if __name__ == "__main__":
-    unittest.main()

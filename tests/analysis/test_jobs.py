@@ -263,7 +263,3 @@ class Parts(WithJobs):
         with unittest.mock.patch("sys.stderr", io.StringIO()) as log:
             progress.line()("[#] 1")
         self.assertEqual(log.getvalue(), "")
-
-
-if __name__ == "__main__":
-    unittest.main()

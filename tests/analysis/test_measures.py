@@ -1,7 +1,5 @@
 """Derived numbers against planted ones: CG ratios, times, speedups, steps; paired and closed loop; excluded rows."""
 
-import unittest
-
 import synthetic
 import numpy as np
 from rodsweep.reading import measures, timings
@@ -312,7 +310,3 @@ class Steps(Folder):
         self.assertFalse(measures.has_guesses(file).any())
         np.testing.assert_allclose(measures.step_figures(file, sims)["joint_gap"], 2e-3)
         self.assertTrue(np.isnan(timings.direct_times(file, sims)["direct_us"]).all())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -321,7 +321,3 @@ class Mistakes(Planted):
         self.refused("render.py", "sweep.h5", "--task", "0", words="task 0 of sweep.h5 is not complete yet")
         said = self.run_script("render.py", "sweep.h5", "--size", "30x20").stdout
         self.assertIn("task1", said)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -273,7 +273,3 @@ class Commands(Report):
         self.write()
         self.refused("report.py", "sweep.h5", "--x", "scene.segmnts", words="did you mean scene.segments?")
         self.refused("report.py", "sweep.h5", "--guess", "subspace", words="guess 'subspace'")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -201,7 +201,3 @@ class Files(unittest.TestCase):
             again = run("score.py", "half.py", "rod_test.json", "--workers", "1")
             self.assertEqual(again.stdout, done.stdout)    # of the same results
             self.assertNotIn("new file", again.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

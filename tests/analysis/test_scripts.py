@@ -5,7 +5,6 @@ import io
 import json
 import os
 import subprocess
-import unittest
 
 import synthetic
 import front
@@ -190,7 +189,3 @@ class Summary(Scripts):
                                   ("known: 10, 20, 40", "--select", "scene.segments=7"),
                                   ("--tolerance x: ", "--tolerance", "x")):
             self.refused("summary.py", "sweep.h5", *arguments, words=words)
-
-
-if __name__ == "__main__":
-    unittest.main()

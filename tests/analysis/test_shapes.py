@@ -2,13 +2,12 @@
 
 A shape is a small planted file: without solves, without guesses, with failures only, and so on. No script may blame
 the file, print a value that is not a number, or show a warning. By default, scripts that draw nothing run over all
-shapes, and the others over the shapes in WORST. With the argument `long`, the others run over all shapes in turn.
+shapes, and the others over the shapes in WORST; in Long, the others run over all shapes in turn.
 """
 
 import contextlib
 import os
 import re
-import sys
 import unittest
 import unittest.mock
 import warnings
@@ -333,7 +332,3 @@ class Long(Shapes):
     def test_figures_of_every_shape(self):
         for number, shape in enumerate(SHAPES):
             self.check(shape, [name for turn, name in enumerate(DRAWING) if (number + turn) % EVERY == 0])
-
-
-if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *(["Long"] if sys.argv[1:] == ["long"] else sys.argv[1:] or ["Short"])])

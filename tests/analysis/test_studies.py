@@ -316,7 +316,3 @@ class RatiosOfSums(unittest.TestCase):
             e = intervals.ratio_of_sums(above[:, None], below[:, None], resamples=400)
             inside += bool(e.low[0] <= 0.5 <= e.high[0])
         self.assertGreaterEqual(inside, 88)
-
-
-if __name__ == "__main__":
-    unittest.main()

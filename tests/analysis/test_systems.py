@@ -4,7 +4,6 @@ import csv
 import json
 import os
 import subprocess
-import unittest
 
 import synthetic  # noqa: F401  (makes analysis/ importable)
 import h5py
@@ -181,7 +180,3 @@ class Exported(InAFolder):
     def swept_without_systems(self):
         os.remove("s.h5")
         return self.swept(evaluation="closed_loop", guesses=None, solve={"method": "xpbd"})
-
-
-if __name__ == "__main__":
-    unittest.main()
