@@ -85,7 +85,3 @@ class Combinations(running.Scripts):
         lines = self.blocks()[60]
         self.assertFalse([line for line in lines if line.startswith("icc from zero")])
         self.assertIn(" - - ", next(line for line in lines if line.startswith("icc from quadratic")))
-
-    def test_without_what_it_needs_it_says_so(self):
-        self.write(guesses=("previous", "quadratic"))
-        self.refused("combinations.py", "sweep.h5", "--x", "scene.segments", words="zero guess")

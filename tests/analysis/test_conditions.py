@@ -32,14 +32,10 @@ class Conditions(Folder):
         self.changed(plant)
         self.table = tidy.Tidy(self.file, "steps", np.arange(6), [], [])
 
-    def test_tasks_are_selected_as_the_table_says(self):
+    def test_tasks_and_rows_are_selected_as_the_table_says(self):
         for text, tasks in CASES["met"].items():
             with self.subTest(text):
                 self.assertEqual(np.flatnonzero(TaskColumns(self.file).select([text])).tolist(), tasks)
-
-    def test_rows_are_selected_as_the_table_says(self):
-        for text, tasks in CASES["met"].items():
-            with self.subTest(text):
                 blocks = self.table.blocks(["task"], [self.table.condition(text)])
                 self.assertEqual([task for block in blocks for task in block["task"].array()], tasks)
 

@@ -69,7 +69,6 @@ class Errors(running.Scripts):
         self.refused("integrators.py", "sweep.h5", words="time.step_s")
         super().write(method="direct", scenes=("helix",), samples=1, grid={"time.step_s": (0.02, 0.01)})
         self.refused("integrators.py", "sweep.h5", words="record.trajectory_every")
-        self.refused("balance.py", "sweep.h5", words="time.balance")
 
 
 class Times(running.Folder):

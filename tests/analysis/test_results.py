@@ -19,8 +19,7 @@ from rodsweep.reading import tidy
 from rodsweep.reading.errors import IgnoredData, KeyNotFound
 from running import Folder, Scripts
 
-PLANT = synthetic.Plant()
-PLANT.reached = lambda guess, tolerance, newton, segments, draw: guess != "previous" or tolerance > 1e-3
+PLANT = synthetic.Plant(reached=synthetic.unless("previous", 1e-3))
 
 
 class Opened(Folder):
@@ -235,9 +234,7 @@ class Export(Scripts):
         def text(said):
             return pandas.read_csv(io.StringIO(said))
 
-        plant = synthetic.Plant()
-        plant.reached = lambda guess, tolerance, newton, segments, draw: guess != "previous" or tolerance > 1e-3
-        incomplete = {"failed": {3: "diverged"}, "pending": (4,), "counts_in_rows": True, "plant": plant}
+        incomplete = {"failed": {3: "diverged"}, "pending": (4,), "counts_in_rows": True, "plant": PLANT}
         for settings, levels in ((incomplete, 3), ({"closed_loop": True, "scenes": ("helix",)}, 3),
                                  ({"method": "direct"}, 2)):
             self.write(**settings)

@@ -266,6 +266,10 @@ SENTENCES = {   # (shape, script): what it says
                                     "8 timed_out",
     ("times that are not numbers", "front"): "sweep.h5 has no times above 0, so the cost of guesses is not known",
     ("xpbd alone", "temporal"): "sweep.h5 has no guesses to compare in the chosen simulations",
+    ("no rows of solves", "front"): "sweep.h5 has no times, so the cost of guesses is not known",
+    ("no rows of solves", "temporal"): "sweep.h5 has no rows of single solves (record.solves is \"summary\"), which this "
+                                       "script needs",
+    ("no zero guess", "combinations"): "sweep.h5 has no preconditioner or no zero guess to compare with",
     ("plain", "balance"): "sweep.h5 has only one kind of step in the chosen simulations: sweep time.balance over false "
                           "and true"}
 EVERY = 4    # a script that draws runs over every fourth shape

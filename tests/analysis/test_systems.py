@@ -11,7 +11,7 @@ import numpy as np
 import rodsweep
 import scipy.io
 import scipy.sparse
-from running import InAFolder, run
+from running import Scripts, run
 
 ROD = {"type": "bending_rod", "segments": 9, "length_m": {"uniform": [1, 2]}, "radius_m": 0.05, "density_kg_m3": 1000,
        "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6}
@@ -43,7 +43,7 @@ def matrix_by_hand(system, held):
     return jacobian * mobility.ravel() @ jacobian.T + np.diag(rod.compliance_per_j.ravel()) / system.dt_s ** 2
 
 
-class Exported(InAFolder):
+class Exported(Scripts):
     def program(self, *words, code=0):
         done = subprocess.run([os.environ["RODSWEEP"], *words], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, code, done.stderr)

@@ -188,7 +188,3 @@ below
         for template in pages.templates():
             with open(template.removesuffix(".j2"), encoding="utf-8") as page:
                 self.assertNotIn("<!--", page.read())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -227,7 +227,3 @@ class Jobs(unittest.TestCase):
                 ways = (name, begun + name, begun.rpartition("_")[0] + name)
                 found.append(next((way for way in ways if way in known), name))
         return found
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -96,7 +96,3 @@ class Studies(unittest.TestCase):
             if used:
                 told = subprocess.run([ROOT / script, "--help"], capture_output=True, text=True, check=True).stdout
                 self.assertEqual(used - set(re.findall(r"--[\w-]+", told)), set(), script)
-
-
-if __name__ == "__main__":
-    unittest.main()
