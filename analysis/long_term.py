@@ -14,7 +14,7 @@ import sys
 import numpy as np
 
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import commandline, envelopes, groups, history_table, measures, texts
+from rodsweep.reading import commandline, envelopes, groups, measures, texts
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -56,10 +56,10 @@ def main():
             raise KeyNotFound(f"{file.path} has no recorded step in the chosen simulations: {shown.census.text()}")
         series = [methods(shown, panel) for panel in panels]
         if options.csv:
-            texts.write_csv(sys.stdout, history_table.COLUMNS,
-                            history_table.records(panels, series, found, shown.sims, file.ok))
+            texts.write_csv(sys.stdout, envelopes.COLUMNS,
+                            envelopes.records(panels, series, found, shown.sims, file.ok))
             return
-        print("\n".join(history_table.lines(panels, series, found, shown.sims, file.ok, begin)) + "\n")
+        print("\n".join(envelopes.lines(panels, series, found, shown.sims, file.ok, begin)) + "\n")
         study.save(file, options, {"long-term": figure(shown, panels, series, found, options)},
                    ["log-time" if options.log_time else ""])
 

@@ -10,7 +10,7 @@ import numpy as np
 
 import trajectories
 from rodsweep.drawing import povray, staging, surfaces, tints
-from rodsweep.reading import joints, obstacles, trajectory
+from rodsweep.reading import obstacles, trajectory
 from rodsweep.reading.sweepfile import SweepFile
 from test_pictures import drawn
 from trajectories import obstacle
@@ -211,8 +211,8 @@ class Paraview(trajectories.Planted):
         for ends, expected in (([(o, o), (o, a)], [[0, 1]]), ([(c, o), (o, a), (o, b)], [[0, 1], [0, 2]]),
                                ([(a, b), (b, c), (c, a)], [[0, 1], [0, 2], [1, 2]]),
                                ([((-1, 0, 0), a), ((0, -1, 0), b)], [[0, 1]]), ([(o, a), (b, c)], np.empty((0, 2)))):
-            np.testing.assert_array_equal(joints.pairs(shape(ends)), expected)
-        self.assertEqual(len(joints.pairs(shape([(c, o), (o, a)], rod=np.array([0, 1])))), 0)   # a contact of two rods
+            np.testing.assert_array_equal(trajectory.joints(shape(ends)), expected)
+        self.assertEqual(len(trajectory.joints(shape([(c, o), (o, a)], rod=np.array([0, 1])))), 0)   # a contact of two rods
 
     def test_segments_without_joints_are_points(self):
         self.plant(rods=6)

@@ -307,11 +307,9 @@ class Mistakes(Planted):
                                   ("must be even", "--movie", "mp4", "--size", "61x40"),
                                   ("scene 'net' is not in the file", "--scene", "net")):
             self.refused("render.py", "sweep.h5", *arguments, words=words)
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            h5["trajectories/position_m"][0] = np.nan
+        self.changed(("trajectories/position_m", 0, np.nan))
         self.refused("render.py", "sweep.h5", "--frame", "0", words="positions that are not numbers")
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            del h5["trajectories/segments"]
+        self.changed(lambda h5: h5.pop("trajectories/segments"))
         self.refused("render.py", "sweep.h5", words="an older rodsweep wrote it")
 
     @plain_pictures()

@@ -11,7 +11,7 @@ import synthetic  # noqa: F401  (makes analysis/ importable)
 import h5py
 import numpy as np
 import rodsweep
-from rodsweep.reading import joints, measures, timings, trajectory
+from rodsweep.reading import measures, timings, trajectory
 from rodsweep.reading.sweepfile import SweepFile
 from running import run
 
@@ -174,7 +174,7 @@ class Program(unittest.TestCase):
                 low, high = shown.ends(0)
                 np.testing.assert_allclose(low[1:], high[:-1], atol=1e-12)
                 self.assertAlmostEqual(np.linalg.norm(high[-1] - low[0]), length)
-                np.testing.assert_array_equal(joints.pairs(shown), [[k, k + 1] for k in range(segments - 1)])
+                np.testing.assert_array_equal(trajectory.joints(shown), [[k, k + 1] for k in range(segments - 1)])
         picture = os.path.join(self.folder.name, "rod.png")
         self.assertEqual(self.script("render.py", path, "--task", "2", "--size", "60x40", "-o", picture).strip(), picture)
         self.assertTrue(os.path.exists(self.script("paraview.py", path, "--task", "2").strip()))

@@ -264,17 +264,14 @@ class Export(Scripts):
 
     def test_rows_of_a_step_that_newton_left_early_are_left_out(self):
         self.write(scenes=("helix",))
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            h5["solves/newton"][2] = -1
+        self.changed(("solves/newton", 2, -1))
         self.assertEqual(len(self.rows("--level", "solves", "--guess", "zero")), 12 * 6 - 1)
 
     def test_numbers_and_texts_come_back_as_they_are_in_the_file(self):
         self.write(scenes=("helix",), failed={2: "error"})
         values = np.random.Generator(np.random.PCG64(2)).normal(size=24)
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            h5["steps/joint_gap"][:] = values
-            h5["steps/joint_gap"][3] = np.nan
-            h5["tasks/message"][2] = b'say "hi", you\ntwo lines'
+        values[3] = np.nan
+        self.changed(("steps/joint_gap", slice(None), values), ("tasks/message", 2, b'say "hi", you\ntwo lines'))
         found = [row["joint_gap"] for row in self.rows("--level", "steps")]
         self.assertEqual(found[3], "")
         self.assertEqual([float(text) for text in found[:3] + found[4:]], [*values[:3], *values[4:]])
@@ -292,8 +289,7 @@ class Export(Scripts):
 
     def test_a_file_without_rows_or_columns_that_later_versions_have_is_read(self):
         self.write(scenes=("helix",), solves=False)
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            h5["tasks/matvecs_sum"] = h5["tasks/iterations_sum"][:] * 2
+        self.changed(lambda h5: h5.update({"tasks/matvecs_sum": h5["tasks/iterations_sum"][:] * 2}))
         self.assertEqual({float(row["matvecs_sum"]) / float(row["iterations_sum"]) for row in self.rows()}, {2.0})
         self.refused("export.py", "sweep.h5", "--level", "solves", words="no rows of solves")
 

@@ -293,7 +293,7 @@ class Shapes(running.Scripts):
             warnings.simplefilter("always")
             if script == "render.py":
                 around.enter_context(unittest.mock.patch("rodsweep.drawing.povray.picture", lambda *_: b""))
-                around.enter_context(unittest.mock.patch("rodsweep.drawing.tools.needed"))
+                around.enter_context(unittest.mock.patch("render.require_program"))
             done = running.run(script, "sweep.h5", *arguments)
             rodsweep.drawing.layout.plt.close("all")    # of a script that stopped before it saved them
         said = done.stdout + done.stderr

@@ -12,14 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rodsweep.reading import columns, conditions, measures, texts
+from rodsweep.reading import conditions, measures, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
 from rodsweep.reading.hdf5 import decoded
-from rodsweep.reading.task_columns import TaskColumns
+from rodsweep.reading.task_columns import FIRST_ROWS, TaskColumns, datasets
 
 LEVELS = ("tasks", "solves", "steps")
 BLOCK_ROWS = 1 << 13
-INTERNAL = ("state", "checksum", *columns.FIRST_ROWS)
+INTERNAL = ("state", "checksum", *FIRST_ROWS)
 COMPONENTS = ("x", "y", "z")
 OF_TASKS = ("task", "outcome", "sample", "own_guess", "point")    # loaded for every task
 OWN_MEANING = {"guess": "label of the initial guess",
@@ -72,7 +72,7 @@ class Tidy:
         mark = mark_of(file, level)
         rows = file.task_count if level == "tasks" else len(file.h5[mark]) if mark else 0
         for folder in (f"/{level}", f"/timing/{level}"):
-            for name, column in columns.datasets(file, folder, rows).items():
+            for name, column in datasets(file, folder, rows).items():
                 if name not in INTERNAL:
                     self.datasets.setdefault(name, column)
         axes = {axis for column in self.datasets.values() for axis in column.axes}

@@ -13,7 +13,7 @@ import numpy as np
 
 from rodsweep.drawing import staging
 from rodsweep.drawing.looks import HELD, RODS
-from rodsweep.reading import groups, joints, obstacles, texts, trajectory
+from rodsweep.reading import groups, obstacles, texts, trajectory
 from rodsweep.reading.errors import KeyNotFound
 
 MEETING = 1e-2
@@ -103,7 +103,7 @@ def _animation(file, task, tasks, room):
 def _points(shown):
     """(index of every end's point, number of points); the first ends of all segments come before the second ones."""
     reach = MEETING * np.median(shown.length[shown.length > 0]) if (shown.length > 0).any() else 1.0
-    points, joined = joints.meeting(np.concatenate(shown.ends(0)), np.tile(shown.rod, 2), reach)
+    points, joined = trajectory.meeting(np.concatenate(shown.ends(0)), np.tile(shown.rod, 2), reach)
     return joined, points
 
 
