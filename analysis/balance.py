@@ -46,17 +46,12 @@ def main():
             raise KeyNotFound(f"{file.path} has no times of steps and solves")
         if not file.has("/steps/momentum_residual"):
             raise KeyNotFound(f"{file.path} has no momentum residuals (/steps/momentum_residual)")
-        panels = by_panel(file, np.unique(shown.sims.any_task))
+        tasks = np.unique(shown.sims.any_task)
+        panels = {title: {kind: _line(file, tasks[of], kind) for kind in KINDS} for title, of in _scenes(file, tasks).items()}
         print("\n".join(table(panels)) + "\n")
         if any(len(lines[1].step_s) == 1 for lines in panels.values()):
             return  # one time step gives no line to draw
         study.save(file, options, {"balance": figure(shown, panels)})
-
-
-def by_panel(file, tasks):
-    """{title: {kind: Line}}"""
-    scenes = _scenes(file, tasks)
-    return {title: {kind: _line(file, tasks[of], kind) for kind in KINDS} for title, of in scenes.items()}
 
 
 def _scenes(file, tasks):

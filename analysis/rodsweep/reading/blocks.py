@@ -89,20 +89,15 @@ def _steps(file, sims):
 
 
 def _ratios(file, sims, newton):
-    return {} if file.zero is None else {**_own_ratios(file, sims, newton), "beside": _beside(file, sims, newton)}
-
-
-def _own_ratios(file, sims, newton):
+    if file.zero is None:
+        return {}
     ratios = measures.cg_counts(file, sims, newton)
+    beside = {name: intervals.mean(measures.cg_counts(file, sims, of, counted).ratio, sims.sample)
+              for name, (of, counted) in BESIDE[newton].items()}
     per_solve = intervals.mean(ratios.per_solve[:, file.zero], resamples=0).value
     return {"ratio": intervals.mean(ratios.ratio, sims.sample), "unreached": np.nansum(ratios.unreached, axis=0),
-            "zero_iterations": per_solve if newton == "first" else None}
-
-
-def _beside(file, sims, newton):
-    found = {name: intervals.mean(measures.cg_counts(file, sims, of, counted).ratio, sims.sample)
-             for name, (of, counted) in BESIDE[newton].items()}
-    return {name: estimate for name, estimate in found.items() if np.isfinite(estimate.value).any()}
+            "zero_iterations": per_solve if newton == "first" else None,
+            "beside": {name: estimate for name, estimate in beside.items() if np.isfinite(estimate.value).any()}}
 
 
 def _times(file, sims, newton):

@@ -25,6 +25,7 @@ PLACES = {"/steps": ("first_step", "steps"), "/solves": ("first_solve", "solves"
 NOT_MEASURED = {f"/tasks/{name}" for name in ("state", "checksum", "message", "outcome", *constants.PLANNED)}
 FRAMES = ("/trajectories/position_m", "/trajectories/orientation")
 IGNORED_KEYS = ("name", "description", "$schema")
+SWEEPS = {"grid", "zip", "uniform", "log_uniform", "integer"}
 
 
 @dataclass
@@ -57,16 +58,12 @@ def _flat(value, path=""):
     """{"scene.segments": ...}: objects except sweeps are flattened; each guess has its own key."""
     if path == "guesses" and isinstance(value, list):
         return {f"guesses.{_text(guess)}": guess for guess in value}
-    if isinstance(value, dict) and not _is_sweep(value):
+    if isinstance(value, dict) and not (len(value) == 1 and set(value) <= SWEEPS):
         found = {}
         for key, inner in value.items():
             found |= _flat(inner, f"{path}.{key}" if path else key)
         return found
     return {path: value}
-
-
-def _is_sweep(value):
-    return len(value) == 1 and next(iter(value)) in ("grid", "zip", "uniform", "log_uniform", "integer")
 
 
 def _text(value):
@@ -84,7 +81,8 @@ def match(one, other, by):
         if places.get(key):
             a.append(task)
             b.append(places[key].pop(0))
-    shared = np.array(_guess_places(one, other, by), dtype=int)
+    there = {key: place for place, key in enumerate(_guess_keys(other, by))}
+    shared = np.array([there.get(key, -1) for key in _guess_keys(one, by)], dtype=int)
     guesses = np.tile(shared, (len(a), 1)) if len(shared) else np.empty((len(a), 0), dtype=int)
     for row, (i, k) in enumerate(zip(a, b)):
         if one.own_guess[i] >= 0:    # closed loop: only its own guess
@@ -123,11 +121,6 @@ def _of_guess(name):
     return (int(found.group(1)), found.group(2)) if found else (None, name)
 
 
-def _guess_places(one, other, by):
-    places = {key: place for place, key in enumerate(_guess_keys(other, by))}
-    return [places.get(key, -1) for key in _guess_keys(one, by)]
-
-
 def _guess_keys(file, by):
     """Identity of each guess: its label and, unless by="parameters", its entry in the job's list of guesses, if any."""
     listed = file.job().get("guesses")
@@ -149,15 +142,12 @@ class Comparison:
         self.a, self.b, self.guesses = pairs.a[both], pairs.b[both], pairs.guesses[both]
         self.compared = len(self.a)
         self.columns, self.differing, self.left_out = {}, {}, []
-        for place in np.flatnonzero(self.outcomes_differ()):
+        for place in np.flatnonzero(one.outcome[self.a] != other.outcome[self.b]):
             self.differing[int(place)] = []
         for path in _datasets(one) | _datasets(other):
             self._compare(path)
         self.differing = dict(sorted(self.differing.items()))
         self.damaged = self._damaged()
-
-    def outcomes_differ(self):
-        return self.one.outcome[self.a] != self.other.outcome[self.b]
 
     def _damaged(self):
         sums = [file.h5["/tasks/checksum"][:] if file.has("/tasks/checksum") else None for file in (self.one, self.other)]
