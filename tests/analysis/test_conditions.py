@@ -141,10 +141,3 @@ class Query(Scripts):
         said = self.query("--csv")
         self.assertEqual(said.stderr, "query.py: sweep.h5: ignored /tasks/mine: not a row per task, solve or step\n")
         self.assertNotIn("mine", said.stdout)
-
-    def test_mistakes_are_one_line_and_exit_code_2(self):
-        self.plant()
-        for words, *arguments in (("did you mean scene.segments?", "scene.segmant=3"),
-                                  ("did you mean outcome?", "--columns", "task,outcom"),
-                                  ("segmants", "--sort", "segmants")):
-            self.refused("query.py", "sweep.h5", *arguments, words=words)

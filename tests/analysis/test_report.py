@@ -254,8 +254,3 @@ class Commands(Report):
         done = self.run_script("report.py", "sweep.h5", "model.h5", "-o", "page.html", "--skip")
         self.assertIn("left out: model.h5 is an HDF5 file", done.stderr)
         self.assertIn("nothing to report", self.run_script("report.py", "model.h5", "--skip", code=2).stderr)
-
-    def test_unknown_names_are_refused_with_the_nearest(self):
-        self.write()
-        self.refused("report.py", "sweep.h5", "--x", "scene.segmnts", words="did you mean scene.segments?")
-        self.refused("report.py", "sweep.h5", "--guess", "subspace", words="guess 'subspace'")

@@ -47,18 +47,6 @@ class Spatial(Scripts):
                          "out/sweep-helix-cg-ratio-by-youngs_modulus_pa-all-newton-84mm.pdf")
         self.assertIn("CG ratios", done.stderr)
 
-    def test_mistakes_are_one_line_and_exit_code_2(self):
-        self.write()
-        for words, *arguments in (("did you mean scene.segments?", "--x", "segmnts"),
-                                  ("did you mean helix?", "--scene", "helx"), ("'0.5'", "--tolerance", "0.5"),
-                                  ("only the zero guess", "--guess", "zero")):
-            self.refused("spatial.py", "sweep.h5", *arguments, words=words)
-        for words, settings in (("no zero guess", {"guesses": ("previous", "quadratic")}),
-                                ("no guesses", {"method": "direct"}),
-                                ("0 of 24 tasks ok, none failed, 24 pending", {"pending": range(24)})):
-            self.write(**settings)
-            self.refused("spatial.py", "sweep.h5", words=words)
-
 
 class Summary(Scripts):
     def summary(self, *arguments):
@@ -171,9 +159,32 @@ class Summary(Scripts):
                               capture_output=True, check=True, cwd=self.folder)
         self.assertEqual((done.stdout, done.stderr), ("0\n", ""))
 
-    def test_mistakes_are_one_line_and_exit_code_2(self):
+
+class Mistakes(Scripts):
+    def test_they_are_one_line_and_exit_code_2(self):
         self.write()
-        for words, *arguments in (("did you mean scene.length_m?", "--by", "scene.length"),
-                                  ("known: 10, 20, 40", "--select", "scene.segments=7"),
-                                  ("--tolerance x: ", "--tolerance", "x")):
-            self.refused("summary.py", "sweep.h5", *arguments, words=words)
+        plane = ("--x", "time.step_s", "--y", "scene.segments")
+        for script, words, *arguments in (
+                ("spatial.py", "did you mean scene.segments?", "--x", "segmnts"),
+                ("spatial.py", "did you mean helix?", "--scene", "helx"),
+                ("spatial.py", "'0.5'", "--tolerance", "0.5"),
+                ("spatial.py", "only the zero guess", "--guess", "zero"),
+                ("summary.py", "did you mean scene.length_m?", "--by", "scene.length"),
+                ("summary.py", "known: 10, 20, 40", "--select", "scene.segments=7"),
+                ("summary.py", "--tolerance x: ", "--tolerance", "x"),
+                ("query.py", "did you mean scene.segments?", "scene.segmant=3"),
+                ("query.py", "did you mean outcome?", "--columns", "task,outcom"),
+                ("query.py", "segmants", "--sort", "segmants"),
+                ("heatmap.py", "two parameters", "--x", "tolerance", "--y", "tolerance"),
+                ("heatmap.py", "solve.tolerance", *plane[:2], "--y", "tolerance", "--measure", "speedup-cg"),
+                ("heatmap.py", "did you mean scene.segments?", *plane[:2], "--y", "scene.segmnts"),
+                ("heatmap.py", "one tolerance", *plane, "--tolerance", "1e-1,1e-2"),
+                ("report.py", "did you mean scene.segments?", "--x", "scene.segmnts"),
+                ("report.py", "guess 'subspace'", "--guess", "subspace")):
+            with self.subTest(script=script, arguments=arguments):
+                self.refused(script, "sweep.h5", *arguments, words=words)
+        for words, settings in (("no zero guess", {"guesses": ("previous", "quadratic")}),
+                                ("no guesses", {"method": "direct"}),
+                                ("0 of 24 tasks ok, none failed, 24 pending", {"pending": range(24)})):
+            self.write(**settings)
+            self.refused("spatial.py", "sweep.h5", words=words)

@@ -168,17 +168,12 @@ class Heatmap(Studies):
         self.assertEqual(plane.cells.count.tolist(), [[0, 4, 5], [5, 5, 5]])
         self.assertEqual(plane.unreached.tolist(), [[0, 0, 0], [20 // 10 * 5] * 3])   # 2 steps x 5 draws
 
-    def test_figures_and_refusals(self):
+    def test_figures(self):
         self.write(plant=Cells(), **self.HEAT)
         where = ("--x", "time.step_s", "--y", "scene.segments")
         printed = self.run_script("heatmap.py", "sweep.h5", *where, files=True).stdout.split()
         self.assertEqual(printed[1], "figures/sweep-heatmap-ratio-step_s-segments-1e-2.png")
         self.run_script("heatmap.py", "sweep.h5", *where, "--measure", "speedup-step", "--each", "--width", "84")
-        for words, *arguments in (("two parameters", "--x", "tolerance", "--y", "tolerance"),
-                                  ("solve.tolerance", *where[:2], "--y", "tolerance", "--measure", "speedup-cg"),
-                                  ("did you mean scene.segments?", *where[:2], "--y", "scene.segmnts"),
-                                  ("one tolerance", *where, "--tolerance", "1e-1,1e-2")):
-            self.refused("heatmap.py", "sweep.h5", *arguments, words=words)
 
 
 class Drifting(synthetic.Plant):
