@@ -86,14 +86,10 @@ def _line(file, tasks, kind):
         apart = [accuracy.distances(accuracy.frames(file, task), exact[int(file.sample[task])]) for task in of]
         line.error.append(None if is_reference else intervals.median(
             [frames[-1] if len(frames) else np.nan for frames in apart], draws))
-        line.iterations.append(intervals.mean([_steps(file, task, "newton_iterations").mean() for task in of], draws))
+        line.iterations.append(intervals.mean([file.rows("/steps/newton_iterations", task).mean() for task in of], draws))
         line.lacking.append(intervals.median(
-            [np.fmax.reduce(_steps(file, task, "momentum_residual")[1:], initial=np.nan) for task in of], draws))
+            [np.fmax.reduce(file.rows("/steps/momentum_residual", task)[1:], initial=np.nan) for task in of], draws))
     return line
-
-
-def _steps(file, task, name):
-    return file.h5[f"/steps/{name}"][file.first_step[task]:file.first_step[task] + file.steps[task]]
 
 
 def table(panels):

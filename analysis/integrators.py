@@ -103,11 +103,10 @@ def order(line, known):
 
 def energies(file, task):
     """(times, total energy relative to the start ÷ the largest kinetic energy) of the steps."""
-    rows = slice(file.first_step[task], file.first_step[task] + file.steps[task])
-    kinetic, potential, elastic = (file.h5[f"/steps/{kind}_energy_j"][rows] for kind in
+    kinetic, potential, elastic = (file.rows(f"/steps/{kind}_energy_j", task) for kind in
                                    ("kinetic", "potential", "elastic"))
     total = kinetic + potential + elastic
-    return file.h5["/steps/time_s"][rows], measures.quotient(total - total[0], kinetic.max())
+    return file.rows("/steps/time_s", task), measures.quotient(total - total[0], kinetic.max())
 
 
 def figure(shown, errors, energy_step):

@@ -75,14 +75,11 @@ def distances(path, exact):
 
 def step_s(file, task):
     """Median wall time of a task's steps. Its rows of solves are in the order of the steps."""
-    def rows(path, first, count):
-        return file.h5[path][first[task]:first[task] + count[task]].astype(float)
-
     def solves(path, column=None):
-        found = rows(path, file.first_solve, file.solves)
+        found = file.rows(path, task).astype(float)
         found = found if column is None else found[:, column]
         return np.nan_to_num(found).reshape(file.steps[task], -1).sum(axis=1)
 
     own = file.own_guess[task]
     solved = solves(DIRECT) if own < 0 else solves(GUESS, own) + solves(CG, own)
-    return np.median(rows(REST, file.first_step, file.steps) + solves(ASSEMBLY) + solved)
+    return np.median(file.rows(REST, task).astype(float) + solves(ASSEMBLY) + solved)

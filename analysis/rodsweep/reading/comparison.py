@@ -223,8 +223,8 @@ class Comparison:
         paths = [f"/timing/solves/{name}" for name in names]
         if all(file.has(path) for path in paths):
             for k, task in enumerate(tasks):
-                rows = slice(file.first_solve[task], file.first_solve[task] + file.solves[task])
-                values = sum(file.h5[path][rows if guess is None else (rows, guess)].astype(float) for path in paths)
+                values = sum(file.rows(path, task).astype(float) for path in paths)
+                values = values if guess is None else values[:, guess]
                 values = values[np.isfinite(values)]
                 found[k] = np.median(values) if len(values) else np.nan
         return found

@@ -237,11 +237,10 @@ def _value(file, task, key):
 
 def _effort(file, task):
     """(wall seconds, products) per simulated second."""
-    rows = slice(file.first_step[task], file.first_step[task] + file.steps[task])
-    seconds = file.h5[REST][rows].astype(float) + file.h5[SOLVE][rows]
+    seconds = file.rows(REST, task).astype(float) + file.rows(SOLVE, task)
     seconds = seconds[np.isfinite(seconds)]
     if not len(seconds):
         return np.nan, np.nan
     simulated = len(seconds) * float(file.parameter(STEP).values[task])
-    products = file.h5["/steps/products"][rows][:len(seconds)]
+    products = file.rows("/steps/products", task)[:len(seconds)]
     return np.minimum(seconds, CLIPPED * np.median(seconds)).sum() / simulated, products.sum() / simulated

@@ -174,6 +174,11 @@ class SweepFile:
             return {}
         return parsed if isinstance(parsed, dict) else {}
 
+    def rows(self, path, task):
+        """The rows of a complete task in a dataset of solves or steps."""
+        first, count = (self.first_step, self.steps) if "/steps/" in path else (self.first_solve, self.solves)
+        return self.h5[path][first[task]:first[task] + count[task]]
+
     def solve_blocks(self, tasks, columns, limit=BLOCK_ROWS):
         """Yields (tasks of the block, start of each within it, {column: rows}) over the tasks' rows of /solves."""
         return self._blocks(tasks, self.first_solve, self.solves, columns, limit)

@@ -60,6 +60,6 @@ def _over_tolerance(file, tasks):
 
 
 def _largest_residual(file, task):
-    residual = file.h5[RESIDUAL][file.first_step[task]:file.first_step[task] + file.steps[task]]
+    residual = file.rows(RESIDUAL, task)
     step = int(np.nanargmax(residual))
     return f"task {task} ({texts.short_text(residual[step], 2)} in step {step})"
