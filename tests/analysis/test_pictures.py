@@ -10,11 +10,9 @@ import unittest
 import unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 
-import synthetic  # noqa: F401  (makes analysis/ importable)
+import trajectories
 import numpy as np
 from PIL import Image
-
-import trajectories
 from rodsweep.drawing import camera, movie, povray, staging, tints
 from rodsweep.reading import trajectory
 

@@ -7,13 +7,12 @@ import subprocess
 import tempfile
 import unittest
 
-import synthetic  # noqa: F401  (makes analysis/ importable)
+from running import run
 import h5py
 import numpy as np
 import rodsweep
 from rodsweep.reading import measures, timings, trajectory
 from rodsweep.reading.sweepfile import SweepFile
-from running import run
 
 ROD = {"type": "bending_rod", "segments": {"grid": [6, 9]}, "length_m": {"uniform": [1, 5]}, "radius_m": 0.05,
        "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6}

@@ -7,12 +7,11 @@ import subprocess
 import tempfile
 import unittest
 
-import synthetic  # noqa: F401  (makes analysis/ importable)
+from running import Folder, run
 import numpy as np
 from rodsweep.reading import score
 from rodsweep.reading.accuracy import Way, way_of
 from rodsweep.reading.sweepfile import SweepFile
-from running import Folder, run
 
 MODEL = os.path.join(os.environ["SOURCE_DIR"], "network", "pretrained", "rods.h5")
 

@@ -5,13 +5,12 @@ import json
 import os
 import subprocess
 
-import synthetic  # noqa: F401  (makes analysis/ importable)
+from running import Scripts, run
 import h5py
 import numpy as np
 import rodsweep
 import scipy.io
 import scipy.sparse
-from running import Scripts, run
 
 ROD = {"type": "bending_rod", "segments": 9, "length_m": {"uniform": [1, 2]}, "radius_m": 0.05, "density_kg_m3": 1000,
        "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6}
