@@ -339,6 +339,4 @@ def _read(dataset, rows):
     if end - begin <= 4 * len(rows):
         return dataset[begin:end][rows - begin]
     order = np.argsort(rows, kind="stable")
-    back = np.empty_like(order)
-    back[order] = np.arange(len(order))
-    return dataset[rows[order]][back]
+    return dataset[rows[order]][np.argsort(order)]
