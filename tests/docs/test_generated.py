@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """docs/tools/pages.py: numbers of tables in pages; the pages of this repository are current."""
 
 import json

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Pages of the repository: valid links, tables and lists; all pages are in the navigation; docs/keys.md is complete."""
 
 import glob

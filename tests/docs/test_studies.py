@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """jobs/studies.py: lists and runs studies; its commands exist."""
 
 import contextlib
