@@ -78,10 +78,9 @@ SEVERAL = "several at once"
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES)
+    made = study.parser(__doc__, EXAMPLES)
     made.add_argument("models", metavar="MODELS", help="folder of the model files")
     made.add_argument("--base", default="base", help="name of the base model (default: base)")
-    study.add_figure_arguments(made)
     return made.parse_args()
 
 
@@ -97,7 +96,7 @@ def main():
                               f"{options.models}: name the base model with --base")
         panels = panels_of(models, base)
         tolerances = commandline.chosen_tolerances(file, options)
-        ratios = [measures.cg_ratios(file, shown.sims, newton).ratio for newton in ("first", "all")]
+        ratios = [measures.cg_counts(file, shown.sims, newton).ratio for newton in ("first", "all")]
         first, every = (intervals.mean(ratio, shown.sims.sample) for ratio in ratios)
         print("\n".join(table(shown, models, base, panels, ratios, (first, every), tolerances)) + "\n")
         ratio = first if shown.newton == "first" else every
@@ -169,7 +168,7 @@ def table(shown, models, base, panels, ratios, means, tolerances):
     def row(name, g, ratio):
         weights = str(models[g].parameters) if g in models else ""
         return [f"  {name}", weights] + ([f"{cost[g]:.3f}"] if spent else []) + [
-            f"{ratio[t].value:.3f} [{ratio[t].low:.3f}, {ratio[t].high:.3f}]" for t in tolerances]
+            texts.interval_text(ratio[t], 3) for t in tolerances]
 
     names = {g: f"{what}: {value}" for what, values in panels.items() for value, g in values} | {base: "base"}
 
@@ -203,14 +202,13 @@ def figure(shown, models, base, panels, ratio, tolerances):
         at = np.arange(len(values), dtype=float)
         guesses = [g for _, g in values]
         for colour, t in zip(TOLERANCE_COLOURS, tolerances):
-            e = ratio[guesses, t]
             axes.axhline(ratio[base, t].value, color=colour, linewidth=0.6, linestyle=(0, (4, 2)), alpha=0.7)
             joined = {} if what in ORDERED else {"linestyle": ""}
-            style.errorbar(axes, at, e.value, yerr=style.whiskers(e.value, e.low, e.high), color=colour, marker="o",
-                           markersize=3, zorder=2, **style.WHISKERS, **joined)
+            style.errorbar(axes, at, [ratio[g, t] for g in guesses], color=colour, marker="o", markersize=3, zorder=2,
+                           **style.WHISKERS, **joined)
             if base in guesses:
-                own = guesses.index(base)
-                axes.plot(at[own], e.value[own], marker="o", markersize=3.6, color=colour, markerfacecolor="white", zorder=3)
+                axes.plot(at[guesses.index(base)], ratio[base, t].value, marker="o", markersize=3.6, color=colour,
+                          markerfacecolor="white", zorder=3)
         axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
         highest = np.nanmax(ratio.high[[*models]][:, tolerances])
         axes.set(xlim=(-0.6, len(values) - 0.4), ylim=(0, min(MOST, 1.05 * max(1, highest))))

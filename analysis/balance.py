@@ -12,10 +12,9 @@ the simulation (record.trajectory_every) and /solves (record.solves "all").
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import accuracy, commandline, intervals, measures, texts
+from rodsweep.reading import accuracy, commandline, intervals, texts
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -35,14 +34,8 @@ class Line:
     lacking: list        # momentum residual
 
 
-def arguments():
-    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
-    study.add_figure_arguments(made)
-    return made.parse_args()
-
-
 def main():
-    options = arguments()
+    options = study.parser(__doc__, EXAMPLES, tolerances=None, newton=False).parse_args()
     with SweepFile(options.file) as file:
         shown = study.of_tasks(file, options)
         balance = file.parameters.get("time.balance")
@@ -53,17 +46,12 @@ def main():
             raise KeyNotFound(f"{file.path} has no times of steps and solves")
         if not file.has("/steps/momentum_residual"):
             raise KeyNotFound(f"{file.path} has no momentum residuals (/steps/momentum_residual)")
-        panels = by_panel(file, np.unique(shown.sims.any_task))
+        tasks = np.unique(shown.sims.any_task)
+        panels = {title: {kind: _line(file, tasks[of], kind) for kind in KINDS} for title, of in _scenes(file, tasks).items()}
         print("\n".join(table(panels)) + "\n")
         if any(len(lines[1].step_s) == 1 for lines in panels.values()):
             return  # one time step gives no line to draw
         study.save(file, options, {"balance": figure(shown, panels)})
-
-
-def by_panel(file, tasks):
-    """{title: {kind: Line}}"""
-    scenes = _scenes(file, tasks)
-    return {title: {kind: _line(file, tasks[of], kind) for kind in KINDS} for title, of in scenes.items()}
 
 
 def _scenes(file, tasks):
@@ -86,7 +74,7 @@ def _scenes(file, tasks):
 def _line(file, tasks, kind):
     step_s, balance = file.parameters["time.step_s"].values, file.parameters["time.balance"].values[tasks]
     finest = step_s[tasks].min()
-    exact = {int(file.sample[task]): accuracy.positions(file, task)
+    exact = {int(file.sample[task]): accuracy.frames(file, task)
              for task in tasks[(balance == 1) & (step_s[tasks] == finest)]}
     line = Line([], [], [], [], [])
     for size in sorted(set(step_s[tasks].tolist()), reverse=True):
@@ -95,21 +83,13 @@ def _line(file, tasks, kind):
         is_reference = kind == 1 and size == finest
         line.step_s.append(size)
         line.second_ms.append(intervals.median([1e3 * accuracy.step_s(file, task) / size for task in of], draws))
+        apart = [accuracy.distances(accuracy.frames(file, task), exact[int(file.sample[task])]) for task in of]
         line.error.append(None if is_reference else intervals.median(
-            [_error(accuracy.positions(file, task), exact[int(file.sample[task])]) for task in of], draws))
-        line.iterations.append(intervals.mean([_steps(file, task, "newton_iterations").mean() for task in of], draws))
+            [frames[-1] if len(frames) else np.nan for frames in apart], draws))
+        line.iterations.append(intervals.mean([file.rows("/steps/newton_iterations", task).mean() for task in of], draws))
         line.lacking.append(intervals.median(
-            [np.fmax.reduce(_steps(file, task, "momentum_residual")[1:], initial=np.nan) for task in of], draws))
+            [np.fmax.reduce(file.rows("/steps/momentum_residual", task)[1:], initial=np.nan) for task in of], draws))
     return line
-
-
-def _error(found, exact):
-    apart = np.square(found[-1] - exact[-1]).sum(axis=1)
-    return float(measures.quotient(np.sqrt(apart.mean()), np.linalg.norm(np.ptp(exact[0], axis=0))))
-
-
-def _steps(file, task, name):
-    return file.h5[f"/steps/{name}"][file.first_step[task]:file.first_step[task] + file.steps[task]]
 
 
 def table(panels):
@@ -139,10 +119,7 @@ def figure(shown, panels):
             axes.plot([float(line.second_ms[k].value) for k in kept], [float(line.error[k].value) for k in kept],
                       **looks[kind].line(), linewidth=0.9, markersize=3)
         axes.set(xscale="log", yscale="log")
-        ticks = layout.log_ticks(*axes.get_xlim())
-        axes.xaxis.set_major_locator(FixedLocator(ticks))
-        axes.xaxis.set_minor_locator(NullLocator())
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
+        layout.set_ticks(axes.xaxis, layout.log_ticks(*axes.get_xlim()))
         page.title(axes, title)
         if column == 0:
             axes.set_ylabel("error / size of the scene", labelpad=2)

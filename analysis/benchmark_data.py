@@ -13,7 +13,6 @@ Files that are there are kept, so a stopped run goes on. All tasks of the job mu
 it first. The card names failed tasks.
 """
 
-import argparse
 import csv
 import hashlib
 import io
@@ -49,8 +48,7 @@ licence.{failed}
 
 
 def arguments():
-    made = argparse.ArgumentParser(description=__doc__, epilog=commandline.examples(EXAMPLES),
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made = commandline.plain_parser(__doc__, EXAMPLES)
     made.add_argument("file", metavar="FILE", help="results of jobs/benchmark.json")
     made.add_argument("-o", "--output", metavar="FOLDER", required=True, help="folder for the files")
     return made.parse_args()

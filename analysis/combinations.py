@@ -11,7 +11,6 @@ intervals over simulations. The file needs /solves (record.solves "all"). Writes
 """
 
 import numpy as np
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, study, style
 from rodsweep.reading import combinations, commandline, groups, intervals, measures, remarks, texts, timings
@@ -32,8 +31,7 @@ COMPARED = (combinations.CLASSICAL, combinations.ZERO, combinations.DIRECT)
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES, tolerances="1e-2,1e-3")
-    study.add_figure_arguments(made)
+    made = study.parser(__doc__, EXAMPLES, tolerances="1e-2,1e-3")
     made.add_argument("--x", metavar="KEY", help="parameter along x (default: scene.nodes_x of a lattice, else "
                                                  "scene.segments); the axis shows joints")
     return made.parse_args()
@@ -150,19 +148,14 @@ def figure(shown, panels, found):
     for k, (axes, cells, row, title) in enumerate(zip(page.axes[0], found, estimates, titles)):
         for kind in there:
             at = [c for c, one in enumerate(row) if kind in one]
-            x = np.array([cells[c].joints for c in at])
-            value, least, most = (np.array([float(getattr(row[c][kind], name)) for c in at])
-                                  for name in ("value", "low", "high"))
-            style.errorbar(axes, x, value, yerr=style.whiskers(value, least, most), **style.WHISKERS,
+            style.errorbar(axes, [cells[c].joints for c in at], [row[c][kind] for c in at], **style.WHISKERS,
                            **STYLES[kind].line())
         axes.set(xscale="log", yscale="log", ylim=(low, high))
         joints = [cell.joints for cell in cells]
         axes.set_xlim(0.7 * min(joints), 1.4 * max(joints))
         for axis, bound in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, (low, high))):
             ticks = layout.log_ticks(*bound)
-            axis.set_major_locator(FixedLocator(ticks[::-(-len(ticks) // 5)]))
-            axis.set_minor_locator(NullLocator())
-            axis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
+            layout.set_ticks(axis, ticks[::-(-len(ticks) // 5)])
         if title:
             page.title(axes, title)
         page.label_y(axes, k, "µs per step" if closed else "µs per solve")

@@ -13,8 +13,6 @@ differences: medians over the tasks, and the median of B / A, the quotient of ea
 tolerance; --csv and --json have all.
 """
 
-import argparse
-import csv
 import json
 import math
 import sys
@@ -36,8 +34,7 @@ MOST_KEYS, MOST_CHANGES, LONGEST = 20, 10, 60
 
 
 def arguments():
-    made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made = commandline.plain_parser(__doc__, EXAMPLES)
     made.add_argument("file", metavar="FILE", help="results file (HDF5)")
     made.add_argument("other", metavar="OTHER", help="second results file (HDF5)")
     made.add_argument("--by", choices=comparison.BY, default="everything", help="how to match tasks")
@@ -178,9 +175,7 @@ def task_rows(found):
 def write_csv(found, tasks):
     names = ("task_a", "task_b", "outcome_a", "outcome_b", "columns") if tasks else \
         ("guess", "tolerance", "a", "b", "difference", "low", "high", "tasks")
-    out = csv.DictWriter(sys.stdout, names, lineterminator="\n")
-    out.writeheader()
-    out.writerows(task_rows(found) if tasks else ratio_rows(found))
+    texts.write_csv(sys.stdout, names, task_rows(found) if tasks else ratio_rows(found))
 
 
 def finite(value):

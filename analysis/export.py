@@ -13,6 +13,7 @@ A terminal shows only the first rows; a file (-o) and a pipe get all.
 
 import contextlib
 import gzip
+import itertools
 import sys
 
 import numpy as np
@@ -20,6 +21,7 @@ import numpy as np
 from rodsweep.reading import commandline, conditions, tidy
 from rodsweep.reading.errors import UserError
 from rodsweep.reading.sweepfile import SweepFile
+from rodsweep.results import frame
 from rodsweep.writing import outputs, tables
 
 EXAMPLES = """examples:
@@ -62,31 +64,28 @@ def main():
         if len(set(names)) < len(names):
             raise UserError(f"--columns {options.columns}: a column is named twice")
         blocks = table.blocks(names, [table.condition(text) for text in options.where])
+        frames = itertools.chain([frame(table, names, [])], (frame(table, names, [block]) for block in blocks))
         if options.output is None and at_terminal():
-            blocks = Beginning(blocks, ON_TERMINAL)
+            frames = Beginning(frames)
         with opened(options) as out:
             write = tables.write_parquet if (options.output or "").endswith(".parquet") else tables.write_csv
-            count = write(out, names, blocks)
+            count = write(out, frames)
         if options.output:
             print(f"{count} rows: {options.output}")
-        elif isinstance(blocks, Beginning) and blocks.count > count:
-            print(f"the first {count} of {blocks.count} rows; -o FILE writes all", file=sys.stderr)
+        elif isinstance(frames, Beginning) and frames.count > count:
+            print(f"the first {count} of {frames.count} rows; -o FILE writes all", file=sys.stderr)
 
 
 class Beginning:
-    """Blocks that have only the first rows; `count` is the number of all rows after the last block."""
+    """The first rows of frames; `count` is the number of all rows after the last frame."""
 
-    def __init__(self, blocks, most):
-        self.blocks, self.left, self.count = blocks, most, 0
+    def __init__(self, frames):
+        self.frames, self.count = frames, 0
 
     def __iter__(self):
-        for block in self.blocks:
-            rows = len(next(iter(block.values())))
-            self.count += rows
-            if self.left > 0:
-                kept, made = np.arange(min(rows, self.left)), {}
-                yield {name: column.at(kept, made) for name, column in block.items()}
-            self.left -= rows
+        for some in self.frames:
+            yield some.head(max(0, ON_TERMINAL - self.count))
+            self.count += len(some)
 
 
 def at_terminal():

@@ -24,14 +24,8 @@ EXAMPLES = """examples:
 OTHERS = ("copingnet", "knn", "oracle", "deflation")
 
 
-def arguments():
-    made = commandline.parser(__doc__, EXAMPLES)
-    study.add_figure_arguments(made)
-    return made.parse_args()
-
-
 def main():
-    options = arguments()
+    options = study.parser(__doc__, EXAMPLES).parse_args()
     with SweepFile(options.file) as file:
         shown = study.of_guesses(file, options)
         if not timings.timed(file):
@@ -49,7 +43,7 @@ def estimates(shown, index):
     """(ratio [guess, tolerance], time [us] per segment and solve of guesses [guess] and of CG from zero) of
     simulations."""
     file, sims = shown.file, shown.sims.subset(index)
-    ratio = intervals.mean(measures.cg_ratios(file, sims, shown.newton).ratio, sims.sample)
+    ratio = intervals.mean(measures.cg_counts(file, sims, shown.newton).ratio, sims.sample)
     spent = timings.times(file, sims)[shown.newton]
     segments = file.results("segments", sims.any_task)[:, None]
     guess = intervals.median(spent.guess_s / spent.solves / segments * 1e6, sims.sample)
@@ -87,10 +81,9 @@ def figure(shown, panels, found, tolerances):
             y, x = ratio[:, t].value, guess.value
             for g in lines:
                 look = shown.style(g)
-                one = slice(g, g + 1)
-                style.errorbar(axes, x[one], y[one], xerr=style.whiskers(x[one], guess[one].low, guess[one].high),
-                               yerr=style.whiskers(y[one], ratio[one, t].low, ratio[one, t].high), **style.WHISKERS,
-                               **look.line())
+                time = guess[g:g + 1]
+                style.errorbar(axes, time.value, [ratio[g, t]], xerr=style.whiskers(time.value, time.low, time.high),
+                               **style.WHISKERS, **look.line())
             axes.set(xscale="log", ylim=(0, None))
             there = [g for g in lines if x[g] > 0 and np.isfinite(y[g])]
             best = np.array(there, dtype=int)[unbeaten(x[there], y[there])]

@@ -34,8 +34,7 @@ MOST_PANELS = 12
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES)
-    study.add_figure_arguments(made)
+    made = study.parser(__doc__, EXAMPLES)
     made.add_argument("--x", metavar="KEY", required=True, help="parameter along x, or `tolerance`")
     made.add_argument("--y", metavar="KEY", required=True, help="parameter along y, or `tolerance`")
     made.add_argument("--measure", choices=list(heat.MEASURES), default="ratio", help="default: ratio")

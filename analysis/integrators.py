@@ -9,7 +9,6 @@ column. The file needs trajectories (record.trajectory_every) and a grid of time
 """
 
 import numpy as np
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, study, style
 from rodsweep.reading import accuracy, commandline, intervals, measures, texts
@@ -23,8 +22,7 @@ VARIED = ("time.step_s", "time.steps", "time.integrator", "time.balance")
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
-    study.add_figure_arguments(made)
+    made = study.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     made.add_argument("--columns", metavar="KEY", default="scene.youngs_modulus_pa",
                       help="a column per value of this parameter (default: scene.youngs_modulus_pa)")
     made.add_argument("--energy-step", metavar="S", type=float, help="step of the lower row (default: the largest)")
@@ -58,7 +56,7 @@ def lines(file, tasks):
         best = min(rows, key=lambda row: (step[tasks[row]], name(file, tasks[row]) != "bdf2"))
         exact = accuracy.frames(file, tasks[best])
         for row in rows:
-            apart[row] = np.nan if row == best else distance(accuracy.frames(file, tasks[row]), exact)
+            apart[row] = np.nan if row == best else error(accuracy.frames(file, tasks[row]), exact)
     found = {}
     for which, size in sorted({(name(file, task), step[task]) for task in tasks}, key=lambda key: (key[0], -key[1])):
         rows = [row for row, task in enumerate(tasks) if (name(file, task), step[task]) == (which, size)
@@ -79,13 +77,9 @@ def name(file, task):
     return str(value("time.integrator", "euler")) + (" in balance" if value("time.balance", 0) == 1 else "")
 
 
-def distance(path, exact):
-    start = exact[0.0]
-    common = [time for time in path if time > 0 and time in exact]
-    if not common:
-        return np.nan
-    squares = [np.square(path[time] - exact[time]).sum(axis=1).mean() for time in common]
-    return float(measures.quotient(np.sqrt(np.mean(squares)), np.linalg.norm(np.ptp(start, axis=0))))
+def error(path, exact):
+    found = accuracy.distances(path, exact)
+    return np.sqrt(np.square(found).mean()) if len(found) else np.nan
 
 
 def table(errors):
@@ -109,11 +103,10 @@ def order(line, known):
 
 def energies(file, task):
     """(times, total energy relative to the start ÷ the largest kinetic energy) of the steps."""
-    rows = slice(file.first_step[task], file.first_step[task] + file.steps[task])
-    kinetic, potential, elastic = (file.h5[f"/steps/{kind}_energy_j"][rows] for kind in
+    kinetic, potential, elastic = (file.rows(f"/steps/{kind}_energy_j", task) for kind in
                                    ("kinetic", "potential", "elastic"))
     total = kinetic + potential + elastic
-    return file.h5["/steps/time_s"][rows], measures.quotient(total - total[0], kinetic.max())
+    return file.rows("/steps/time_s", task), measures.quotient(total - total[0], kinetic.max())
 
 
 def figure(shown, errors, energy_step):
@@ -130,18 +123,14 @@ def figure(shown, errors, energy_step):
     for column, (title, of) in enumerate(errors.items()):
         upper, lower = page.axes[0][column], page.axes[1][column]
         for which, line in of.items():
-            x, estimates = [entry[0] for entry in line], [entry[1] for entry in line]
-            y, low, high = (np.array([float(getattr(e, part)) for e in estimates]) for part in ("value", "low", "high"))
-            style.errorbar(upper, x, y, yerr=style.whiskers(y, low, high), **looks[which].line(), linewidth=0.9,
-                           markersize=2.8, elinewidth=0.5)
+            sizes, estimates, _ = zip(*line)
+            style.errorbar(upper, sizes, estimates, **looks[which].line(), linewidth=0.9, markersize=2.8, elinewidth=0.5)
             here = [tasks[0] for of_size, _, tasks in line if np.isclose(of_size, size)]
             if here:
                 lower.plot(*energies(shown.file, here[0]), color=looks[which].colour, linewidth=0.8)
         upper.set(xscale="log", yscale="log" if logarithmic else "linear")
         steps = sorted({entry[0] for line in of.values() for entry in line})
-        upper.xaxis.set_major_locator(FixedLocator(steps[::-2][::-1]))
-        upper.xaxis.set_minor_locator(NullLocator())
-        upper.xaxis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
+        layout.set_ticks(upper.xaxis, steps[::-2][::-1])
         for axes in (upper, lower):
             page.title(axes, title)
         page.label_y(upper, column, "error / size of the rod")

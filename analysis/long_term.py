@@ -14,7 +14,7 @@ import sys
 import numpy as np
 
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import commandline, envelopes, groups, history_table, measures, texts
+from rodsweep.reading import commandline, envelopes, groups, measures, texts
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -33,8 +33,7 @@ DECADES = 8   # of a logarithmic axis, below the largest value of the methods th
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
-    study.add_figure_arguments(made)
+    made = study.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     made.add_argument("--after", metavar="STEP", type=int,
                       help="first step of the fit of the drift (default: a tenth of the run)")
     made.add_argument("--log-time", action="store_true", help="logarithmic time axis")
@@ -57,9 +56,10 @@ def main():
             raise KeyNotFound(f"{file.path} has no recorded step in the chosen simulations: {shown.census.text()}")
         series = [methods(shown, panel) for panel in panels]
         if options.csv:
-            history_table.write_csv(sys.stdout, panels, series, found, shown.sims, file.ok)
+            texts.write_csv(sys.stdout, envelopes.COLUMNS,
+                            envelopes.records(panels, series, found, shown.sims, file.ok))
             return
-        print("\n".join(history_table.lines(panels, series, found, shown.sims, file.ok, begin)) + "\n")
+        print("\n".join(envelopes.lines(panels, series, found, shown.sims, file.ok, begin)) + "\n")
         study.save(file, options, {"long-term": figure(shown, panels, series, found, options)},
                    ["log-time" if options.log_time else ""])
 

@@ -9,7 +9,6 @@ panel has the learning rate. Several models are drawn together, but losses of di
 running training is shown up to its last epoch.
 """
 
-import argparse
 import os
 
 import numpy as np
@@ -25,8 +24,7 @@ EXAMPLES = """examples:
 
 
 def arguments():
-    made = argparse.ArgumentParser(description=__doc__, epilog=commandline.examples(EXAMPLES),
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made = commandline.plain_parser(__doc__, EXAMPLES)
     made.add_argument("files", nargs="+", metavar="MODEL", help="model file of `rodsweep run` with a job of kind \"train\"")
     study.add_figure_arguments(made)
     made.set_defaults(scene=None, newton="first")

@@ -8,7 +8,6 @@
 NAME is step-STEP_newton-ITERATION_rod-ROD. x is the solution that moved the rod.
 """
 
-import argparse
 import os
 
 from rodsweep.reading import commandline
@@ -21,8 +20,7 @@ EXAMPLES = """examples:
 
 
 def arguments():
-    made = argparse.ArgumentParser(description=__doc__, epilog=commandline.examples(EXAMPLES),
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made = commandline.plain_parser(__doc__, EXAMPLES)
     made.add_argument("file", metavar="FILE", help="file of `rodsweep systems`")
     made.add_argument("--format", choices=matrices.FORMATS, default="matrix-market", help="default: matrix-market")
     made.add_argument("-o", "--output", metavar="FOLDER", required=True, help="folder for the files")

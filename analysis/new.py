@@ -4,7 +4,6 @@
 Of my_guess.py the job is my_guess.json. docs/own-guess.md explains both.
 """
 
-import argparse
 import json
 import os
 import re
@@ -72,8 +71,7 @@ JOB = {
 
 
 def arguments():
-    made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made = commandline.plain_parser(__doc__, EXAMPLES)
     made.add_argument("kind", choices=("guess", "preconditioner"))
     made.add_argument("file", metavar="FILE", help="its new file; the name ends in .py")
     return made.parse_args()

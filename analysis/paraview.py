@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from rodsweep.drawing import staging, surfaces
-from rodsweep.reading import commandline, joints, obstacles, trajectory
+from rodsweep.reading import commandline, obstacles, trajectory
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.writing import outputs
 
@@ -52,7 +52,7 @@ def document(shown, reference, touched=()):
     obstacles.of_task()."""
     root = ElementTree.Element("Xdmf", Version="2.0")
     domain = ElementTree.SubElement(root, "Domain")
-    topology(domain, joints.pairs(shown), len(shown.length))
+    topology(domain, trajectory.joints(shown), len(shown.length))
     series = ElementTree.SubElement(domain, "Grid", Name=f"task {shown.task}", GridType="Collection",
                                     CollectionType="Temporal")
     rows = Rows(shown.h5, reference, len(shown.length))

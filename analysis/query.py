@@ -8,7 +8,6 @@ the job (scene.segments), state (done, pending), outcome, message, counts and ra
 another tolerance cg_ratio.LABEL@1e-4), times (elapsed_s) and more: --columns help lists them.
 """
 
-import argparse
 import csv
 import json
 import math
@@ -32,8 +31,7 @@ on a parameter whose values never meet it"""
 
 
 def arguments():
-    made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made = commandline.plain_parser(__doc__, EXAMPLES)
     made.add_argument("file", metavar="FILE", help="results file (HDF5)")
     made.add_argument("conditions", metavar="CONDITION", nargs="*", help="condition that the tasks must meet")
     made.add_argument("--where", metavar="CONDITION", action="append", default=[], help="another condition")

@@ -13,10 +13,10 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from rodsweep.drawing import movie, povray, staging, tints, tools
+from rodsweep.drawing import movie, povray, staging, tints
 from rodsweep.reading import commandline, obstacles, trajectory
 from rodsweep.reading.commandline import whole_number
-from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.errors import KeyNotFound, require_program
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.writing import outputs
 
@@ -66,9 +66,9 @@ def main():
         raise KeyNotFound("--movie shows all frames, or those of --every N: remove --frame")
     if options.movie == "mp4" and any(side % 2 for side in options.size):
         raise KeyNotFound("--size of an MP4 must be even: its colours have half the resolution")
-    tools.needed("povray", "it draws the pictures")
+    require_program("povray", "it draws the pictures")
     if options.movie == "mp4":
-        tools.needed("ffmpeg", "--movie mp4 needs it, gif does not")
+        require_program("ffmpeg", "--movie mp4 needs it, gif does not")
     with SweepFile(options.file) as file:
         shown = trajectory.chosen(file, options)
         if options.beside:

@@ -18,7 +18,6 @@ learned settings that contains the intervals of all trainings. The last table ha
 setting of this kind reached the error on the tuning draws. An error in parentheses is above its level on the test draws.
 """
 
-import argparse
 import glob
 import json
 import os
@@ -41,8 +40,7 @@ JOBS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "jobs", "s
 
 
 def arguments():
-    made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made = commandline.plain_parser(__doc__, EXAMPLES)
     made.add_argument("files", nargs="+", metavar="FILE",
                       help=f"results of a tuning job, NAME{ENDING}; or a guess in Python and jobs")
     made.add_argument("--jobs", action="store_true",
@@ -210,13 +208,11 @@ def figure(scenes, width_mm):
             firsts = [found[level, answer][1][0] for level in levels]    # of the trainings
             times = [intervals.median(1e3 * runs.time_s, runs.draws) for runs in firsts]
             x = [level * 1.08 ** (shift - len(shown) // 2) for level in levels]
-            y, low, high = (np.array([float(getattr(time, part)) for time in times]) for part in ("value", "low", "high"))
-            style.errorbar(axes, x, y, yerr=style.whiskers(y, low, high), **look.line(), linewidth=0.9, markersize=2.8,
-                           elinewidth=0.5)
-            seen += [low, high, y]
+            style.errorbar(axes, x, times, **look.line(), linewidth=0.9, markersize=2.8, elinewidth=0.5)
+            seen += [end for time in times for end in (time.low, time.high, time.value)]
         page.title(axes, scene)
         page.label_y(axes, column, "ms per simulated second")
-    seen = np.concatenate(seen) if seen else np.ones(1)
+    seen = seen or [1]
     for axes in page.axes[0]:
         axes.set(xscale="log", yscale="log", xlim=(2 * score.LEVELS[0], score.LEVELS[-1] / 2),
                  ylim=(0.7 * np.nanmin(seen), 1.4 * np.nanmax(seen)))

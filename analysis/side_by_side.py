@@ -23,8 +23,7 @@ EXAMPLES = """examples:
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
-    study.add_figure_arguments(made)
+    made = study.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     made.add_argument("--moments", metavar="S,…", type=moments, default=moments("0.2,0.5,1,2,4"),
                       help="simulated times in s (default: 0.2,0.5,1,2,4)")
     made.add_argument("--log-time", action="store_true", help="logarithmic time axis of the last panel")

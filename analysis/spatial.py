@@ -35,8 +35,7 @@ class Study(study.Study):
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES)
-    study.add_figure_arguments(made)
+    made = study.parser(__doc__, EXAMPLES)
     made.add_argument("--x", metavar="KEY", default="scene.segments",
                       help="parameter along x (default: scene.segments)")
     return made.parse_args()

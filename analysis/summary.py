@@ -69,13 +69,9 @@ def heading(file, sims, chosen, census):
     seed = f", seed {job['seed']}" if "seed" in job else ""
     lines = [f"{file.path}: {name}{seed}" + (f", revision {revisions}" if revisions else ""),
              census.text() + ("; failed tasks are left out of all numbers" if census.failed else "")]
-    failed = [t for t in range(file.task_count) if chosen[t] and file.complete[t] and not file.ok[t]]
-    messages = file.results("message", failed[:FAILURES_SHOWN]) if failed else None
-    for k, task in enumerate(failed[:FAILURES_SHOWN]):
-        said = f": {messages[k]}" if messages is not None and messages[k] else ""
-        lines.append(f"  task {task}: {file.outcome[task]}{said}")
-    if len(failed) > FAILURES_SHOWN:
-        lines.append(f"  and {len(failed) - FAILURES_SHOWN} more")
+    failed, more = measures.failures(file, chosen, FAILURES_SHOWN)
+    lines += [f"  task {task}: {outcome}" + (f": {message}" if message else "") for task, outcome, message in failed]
+    lines += [f"  and {more} more"] * (more > 0)
     if not len(sims):
         return lines + ["No simulation is complete yet."]
     said = remarks.conditions(file, sims.tasks())
@@ -178,26 +174,13 @@ def _warning(file, sims):
     return [f"WARNING: {warning}"] if warning else []
 
 
-STEP_COLUMNS = {"newton_iterations": "Newton its/step", "newton_residual": "Newton residual",
-                "momentum_residual": "momentum residual",
-                "length_drift": "length drift", "joint_gap": "joint gap/length", "penetration": "penetration/radius",
-                "contact_residual": "contact residual/radius"}
-
-
 def step_lines(file, found, guesses):
-    names = [name for name in STEP_COLUMNS if any(name in block.steps for block in found)]
-    if not names:
+    shown = blocks.step_measures(found)
+    if not shown:
         return []
-    rows = [["Steps: median over simulations (largest)"] + [STEP_COLUMNS[name] for name in names]]
-    for block in found:
-        for g in guesses if block.sims.closed_loop else [0]:
-            title = f"{block.title}, {file.guesses[g]}" if block.sims.closed_loop else block.title
-            cells = []
-            for name in names:
-                estimate, largest = block.steps.get(name, (None, None))
-                cells.append("-" if estimate is None else
-                             f"{texts.short_text(estimate.value[g], 2)} ({texts.short_text(largest[g], 2)})")
-            rows.append([f"  {title}"] + cells)
+    rows = [["Steps: median over simulations (largest)"] + [measure.column for measure in shown.values()]]
+    for title, numbers in blocks.step_rows(found, guesses, file.guesses):
+        rows.append([f"  {title}"] + ["{} ({})".format(*numbers[name]) if name in numbers else "-" for name in shown])
     return [""] + texts.aligned(rows)
 
 
@@ -208,8 +191,7 @@ def _titled(block, counts):
 
 
 def solves(file, sims):
-    of, tasks = unconverged.counts(file), sims.tasks()
-    return {"timed": int(of.timed[tasks].sum()), "missed": int(of.missed[tasks].sum())}
+    return {name: int(unconverged.solves(file, name)[sims.tasks()].sum()) for name in ("timed", "missed")}
 
 
 def write_csv(file, sims, census, records):

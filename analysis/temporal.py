@@ -26,8 +26,7 @@ EXAMPLES = """examples:
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES)
-    study.add_figure_arguments(made)
+    made = study.parser(__doc__, EXAMPLES)
     made.add_argument("--window", metavar="STEPS", type=commandline.whole_number,
                       help="steps per window, 1 for no smoothing (default: a twentieth of the run)")
     return made.parse_args()

@@ -163,12 +163,11 @@ class Results:
             yield self._part(table, names, gathered)
 
     def _part(self, table, names, gathered):
-        frame = library("pandas").DataFrame({name: _column(table, name, [block[name] for block in gathered]) for name in names})
-        about = {name: table.about(name) for name in names}
-        frame.attrs = {"unit": {name: unit for name, (unit, _) in about.items() if unit},
-                       "meaning": {name: meaning for name, (_, meaning) in about.items() if meaning},
-                       "missing": self.missing}
-        return frame
+        made, about = frame(table, names, gathered), {name: table.about(name) for name in names}
+        made.attrs = {"unit": {name: unit for name, (unit, _) in about.items() if unit},
+                      "meaning": {name: meaning for name, (_, meaning) in about.items() if meaning},
+                      "missing": self.missing}
+        return made
 
     def _dataset(self, table, owners, guesses, tolerances, found, parameters):
         row = "task" if table.level == "tasks" else "row"
@@ -193,6 +192,11 @@ class Results:
             variables[name] = variable(name, (row, *axes), _measured(values, name))
         attributes = {"missing": self.missing, "job": self.job.get("name", ""), "file": self.file.path}
         return library("xarray").Dataset(variables, coordinates, attributes)
+
+
+def frame(table, names, blocks):
+    """Blocks of a tidy.Tidy as a frame."""
+    return library("pandas").DataFrame({name: _column(table, name, [block[name] for block in blocks]) for name in names})
 
 
 def _column(table, name, columns):

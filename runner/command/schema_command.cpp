@@ -2,6 +2,8 @@
 
 #include <set>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "runner/file/layout.hpp"
@@ -9,6 +11,7 @@
 #include "runner/keys/key.hpp"
 #include "runner/plan/task_outcome.hpp"
 #include "runner/specs/guess_keys.hpp"
+#include "solver/scene/scenes.hpp"
 
 namespace rodsweep {
 namespace {
@@ -18,6 +21,18 @@ void add_paths(const std::vector<Key>& keys, std::set<std::string>& names) {
     if (key.text == Key::Text::path) names.insert(key.name);
     add_paths(key.keys, names);
   }
+}
+
+// The names of the scenes that have a floor of their own, the only obstacle that a scene adds to those of its job.
+template <class... Scenes>
+std::vector<std::string> with_floor(const std::variant<Scenes...>*) {
+  std::vector<std::string> names;
+  const auto add = [&names](const auto& scene) {
+    if constexpr (std::is_base_of_v<TouchingRods, std::decay_t<decltype(scene)>>)
+      if (!build_scene(scene).obstacles.empty()) names.emplace_back(scene.name);
+  };
+  (add(Scenes{}), ...);
+  return names;
 }
 
 }  // namespace
@@ -38,6 +53,7 @@ std::string schema_text() {
                             {"outcomes", outcomes},
                             {"planned", planned},
                             {"paths", paths},
+                           {"with_floor", with_floor(static_cast<const SceneSpec*>(nullptr))},
                             {"gauss_seidel_iterations", *iterations.preset}}}});
 }
 

@@ -64,11 +64,22 @@ class Folder(unittest.TestCase):
         synthetic.Sweep(**settings).write(self.path)
         return self.opened()
 
-    def changed(self, change):
-        """The file, opened again after change(its h5py.File)."""
+    def changed(self, *changes):
+        """The file, opened again after changes: (path, index, value or a function of the old values), or functions of its
+        h5py.File. A path that is not there becomes a new dataset with this value, without an index."""
         self.close()
         with synthetic.h5py.File(self.path, "r+") as h5:
-            change(h5)
+            for change in changes:
+                if callable(change):
+                    change(h5)
+                    continue
+                path, index, value = change
+                if path in h5:
+                    values = h5[path][:]
+                    values[index] = value(values[index]) if callable(value) else value
+                    h5[path][...] = values
+                else:
+                    h5[path] = value
         return self.opened()
 
     def opened(self):
@@ -87,13 +98,17 @@ class Folder(unittest.TestCase):
 
 
 class Scripts(Folder):
+    """Each test in an empty folder of its own."""
+
     def setUp(self):
         super().setUp()
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
+        self.folder = os.getcwd()    # without symbolic links
 
     def write(self, **settings):
         settings.setdefault("steps", 2)
+        self.close()
         synthetic.Sweep(**settings).write(self.path)
 
     def run_script(self, name, *arguments, code=0, files=False):
@@ -108,14 +123,3 @@ class Scripts(Folder):
         self.assertTrue(error.startswith(f"{name}: "), error)
         self.assertIn(words, error)
         return error
-
-
-class InAFolder(unittest.TestCase):
-    """Each test in an empty folder of its own."""
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
-        self.folder = os.getcwd()

@@ -23,6 +23,9 @@ TOLERANCES = tuple(10.0 ** -k for k in range(1, 9))
 class Plant:
     """Known qualities; tests override some. `draw` is the number of the sample."""
 
+    def __init__(self, **others):
+        vars(self).update(others)
+
     quality = {"zero": 1.0, "previous": 0.5, "linear": 0.6, "quadratic": 0.25, "oracle(0.1)": 0.1, "oracle(0.01)": 0.05}
 
     def zero_iterations(self, segments, tolerance):
@@ -61,6 +64,11 @@ class Plant:
     residual = 1e-10     # of Newton
     penetration = None   # a number: the penetration in every step of a file with contact
     reached = staticmethod(lambda guess, tolerance, newton, segments, draw: True)    # to 1e-2: the timed solves too
+
+
+def unless(guess, least=0):
+    """A Plant.reached: a guess does not reach tolerances of at most `least`."""
+    return lambda name, tolerance, *_: name != guess or tolerance > least
 
 
 @dataclass

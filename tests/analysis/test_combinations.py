@@ -1,7 +1,5 @@
 """combinations.py: the cheapest combination of preconditioner and guess of each kind, and its speedup."""
 
-import unittest
-
 import h5py
 import numpy as np
 
@@ -87,11 +85,3 @@ class Combinations(running.Scripts):
         lines = self.blocks()[60]
         self.assertFalse([line for line in lines if line.startswith("icc from zero")])
         self.assertIn(" - - ", next(line for line in lines if line.startswith("icc from quadratic")))
-
-    def test_without_what_it_needs_it_says_so(self):
-        self.write(guesses=("previous", "quadratic"))
-        self.refused("combinations.py", "sweep.h5", "--x", "scene.segments", words="zero guess")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -17,7 +17,7 @@ import numpy as np
 import rodsweep
 from rodsweep import jobs, program, progress
 from rodsweep.reading import job_paths
-from running import InAFolder
+from running import Scripts
 
 ROD = {"type": "bending_rod", "segments": 6, "length_m": rodsweep.uniform(1, 5), "radius_m": 0.05,
        "density_kg_m3": 1000, "youngs_modulus_pa": 1e5, "torsion_modulus_pa": 1e6}
@@ -41,7 +41,7 @@ class Bar(io.StringIO):
         return True
 
 
-class WithJobs(InAFolder):
+class WithJobs(Scripts):
     def run_job(self, job, **options):
         results = job.run(**{"progress": False, **options})
         self.addCleanup(results.close)
@@ -263,7 +263,3 @@ class Parts(WithJobs):
         with unittest.mock.patch("sys.stderr", io.StringIO()) as log:
             progress.line()("[#] 1")
         self.assertEqual(log.getvalue(), "")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -50,7 +50,3 @@ class Large(unittest.TestCase):
         self.check([("summary.py",), ("report.py",), ("spatial.py",), ("temporal.py",), ("long_term.py",),
                     ("export.py", "--level", "steps", "--columns", "task,length_drift")],
                    tasks=max(4, ROWS // 120_000 // 4 * 4), steps=20_000, newton=6, closed_loop=True)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,9 @@
-"""analysis/pyproject.toml: it includes all files and installs with pip."""
+"""The package: imports go from scripts to drawing to reading, without cycles, and numbers need no drawing library; it
+installs with pip; example.ipynb runs unchanged on a planted file, shows its numbers, and is stored without outputs."""
 
+import ast
 import importlib.util
+import json
 import os
 import re
 import shutil
@@ -13,9 +16,89 @@ import venv
 from pathlib import Path
 
 import synthetic
+import matplotlib
+from running import Scripts
 
 ROOT = Path(synthetic.ANALYSIS)
 TOOLS = ("pip", "setuptools", "wheel")
+NOTEBOOK = os.path.join(synthetic.ANALYSIS, "example.ipynb")
+# Each may import those before it. `rodsweep` means the modules directly in the package; "" means the scripts, "results" those
+# that make the tables of this repository.
+ROOMS = ("rodsweep.reading", "rodsweep.writing", "rodsweep.drawing", "rodsweep.report", "rodsweep", "", "results")
+DRAW = {"matplotlib", "PIL"}          # not imported by reading and writing
+
+
+def imports(root):
+    """(file, line, importing module, imported module) of files below root; full names: rodsweep.reading.measures."""
+    files = {".".join(path.relative_to(root).with_suffix("").parts): path for path in sorted(root.rglob("*.py"))
+             if path.relative_to(root).parts[0] != "build"}    # made by pip
+    for module, path in files.items():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            names = [alias.name for alias in node.names] if isinstance(node, (ast.Import, ast.ImportFrom)) else []
+            if isinstance(node, ast.ImportFrom):
+                base = f"{room(module)}.{node.module or ''}".strip(".") if node.level else node.module
+                names = [f"{base}.{name}" if f"{base}.{name}" in files else base for name in names]
+            for name in dict.fromkeys(names):
+                yield path.relative_to(root).as_posix(), node.lineno, module, name
+
+
+def room(module):
+    return module.rpartition(".")[0]
+
+
+def violations(root):
+    found = list(imports(root))
+    uses = {}
+    for _, _, module, name in found:
+        uses.setdefault(module, set()).add(name)
+
+    def reachable(start):
+        seen, ahead = set(), [start]
+        while ahead:
+            some = uses.get(ahead.pop(), set()) - seen
+            seen |= some
+            ahead += some
+        return seen
+
+    for file, line, module, name in found:
+        here, own = room(module), Path(root, *name.split(".")).with_suffix(".py").exists()
+        if own and ROOMS.index(room(name)) > ROOMS.index(here):
+            yield f"{file}:{line}: {here} must not use {name}"
+        elif own and here == room(name) == "":
+            yield f"{file}:{line}: a script must not use another, {name}"
+        elif own and module in reachable(name):
+            yield f"{file}:{line}: closes a circle with {name}"
+        elif here in ("rodsweep.reading", "rodsweep.writing") and name.partition(".")[0] in DRAW:
+            yield f"{file}:{line}: {here} draws nothing, {name}"
+
+
+class Imports(unittest.TestCase):
+    def test_they_run_one_way_without_circles(self):
+        self.assertGreater(len(list(imports(ROOT))), 100)
+        self.assertEqual(list(violations(ROOT)), [])
+
+    def test_violations_are_named_with_file_and_line(self):
+        planted = {"reading/a.py": "import numpy\nfrom rodsweep.reading import b, c\n",
+                   "reading/b.py": "from rodsweep.reading.c import x\n",
+                   "reading/c.py": "import os\n\ndef f():\n    from . import a\n",
+                   "reading/d.py": "from rodsweep.drawing import page\n", "reading/e.py": "import matplotlib.pyplot as plt\n",
+                   "drawing/page.py": "from rodsweep.reading import e\nimport figure\n",
+                   "../figure.py": "from rodsweep.reading.a import y\n", "../table.py": "import figure\n"}
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in planted.items():
+                path = Path(folder, "rodsweep", name)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text, encoding="utf-8")
+            found = [line.split(": ")[0] for line in violations(Path(folder))]
+        within = [line.removeprefix("rodsweep/") for line in found]
+        self.assertEqual(within, ["drawing/page.py:2", "reading/a.py:2", "reading/a.py:2", "reading/b.py:1",
+                                  "reading/c.py:4", "reading/d.py:1", "reading/e.py:1", "table.py:1"])
+
+    def test_a_script_without_figures_loads_no_program_to_draw(self):
+        code = f"import sys; sys.path.insert(0, {synthetic.ANALYSIS!r}); import summary, export, report; print(*sys.modules)"
+        loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+        self.assertEqual(DRAW & set(loaded), set())
+        self.assertIn("rodsweep.reading.sweepfile", loaded)
 
 
 class Package(unittest.TestCase):
@@ -60,5 +143,51 @@ class Package(unittest.TestCase):
         return re.search(r"`(pip install [^`]*--no-index [^`]*)`", page)[1]
 
 
-if __name__ == "__main__":
-    unittest.main()
+class Notebook(Scripts):
+    def setUp(self):
+        super().setUp()
+        with open(NOTEBOOK, encoding="utf-8") as file:
+            self.whole = json.load(file)
+
+    def shown(self):
+        """Runs the code cells in this process without Jupyter; returns the value that each shows, or None."""
+        names, values = {"__name__": "__main__"}, []
+        for cell in self.whole["cells"]:
+            if cell["cell_type"] == "code":
+                tree = ast.parse("".join(cell["source"]))
+                last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
+                exec(compile(tree, NOTEBOOK, "exec"), names)
+                values.append(eval(compile(ast.Expression(last.value), NOTEBOOK, "eval"), names) if last else None)
+        return values
+
+    def test_all_cells_run_and_show_the_planted_numbers(self):
+        matplotlib.use("agg")
+        os.mkdir("results")
+        synthetic.Sweep(steps=2, samples=6, pending=(2,), counts_in_rows=True).write("results/demo.h5")
+        with synthetic.h5py.File("results/demo.h5", "r+") as h5:
+            h5["tasks/iterations_sum"].attrs["meaning"] = "planted"
+        opened, missing, tasks, units, ratio, figure, means, blocks, _ = self.shown()
+        self.assertIn("35 of 36 tasks ok", repr(opened))
+        self.assertEqual(missing, "1 pending of 36 tasks")
+        self.assertEqual(len(tasks), 5)
+        self.assertEqual(units[0], "planted")
+        self.assertEqual(units[1]["scene.youngs_modulus_pa"], "Pa")
+        for guess, quality in (("previous", 0.5), ("quadratic", 0.25), ("oracle(0.1)", 0.1)):
+            values = ratio[ratio.guess == guess]
+            self.assertEqual(len(values), 2 * 3)
+            self.assertTrue((abs(values.value - quality) < 0.01).all())
+            self.assertTrue(((values.low <= values.value) & (values.value <= values.high)).all())
+            self.assertTrue((abs(means[guess] - quality) < 0.01).all())
+        self.assertEqual(len(figure.axes), 2)
+        self.assertEqual(len(figure.axes[0].containers), 3)
+        self.assertEqual(blocks.shape, (2, 4))
+        self.assertAlmostEqual(blocks["quadratic"][0] / blocks["zero"][0], 0.25, delta=0.01)
+
+    def test_it_is_a_notebook_without_outputs(self):
+        whole = self.whole
+        self.assertEqual((whole["nbformat"], whole["metadata"]["kernelspec"]["name"]), (4, "python3"))
+        self.assertEqual(len({cell["id"] for cell in whole["cells"]}), len(whole["cells"]))
+        self.assertIn("`pip install 'analysis/[frames]'`", "".join(whole["cells"][0]["source"]))    # pandas and xarray too
+        for cell in whole["cells"]:
+            if cell["cell_type"] == "code":
+                self.assertEqual((cell["outputs"], cell["execution_count"]), ([], None))

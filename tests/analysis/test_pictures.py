@@ -10,11 +10,9 @@ import unittest
 import unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 
-import synthetic  # noqa: F401  (makes analysis/ importable)
+import trajectories
 import numpy as np
 from PIL import Image
-
-import trajectories
 from rodsweep.drawing import camera, movie, povray, staging, tints
 from rodsweep.reading import trajectory
 
@@ -307,11 +305,9 @@ class Mistakes(Planted):
                                   ("must be even", "--movie", "mp4", "--size", "61x40"),
                                   ("scene 'net' is not in the file", "--scene", "net")):
             self.refused("render.py", "sweep.h5", *arguments, words=words)
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            h5["trajectories/position_m"][0] = np.nan
+        self.changed(("trajectories/position_m", 0, np.nan))
         self.refused("render.py", "sweep.h5", "--frame", "0", words="positions that are not numbers")
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            del h5["trajectories/segments"]
+        self.changed(lambda h5: h5.pop("trajectories/segments"))
         self.refused("render.py", "sweep.h5", words="an older rodsweep wrote it")
 
     @plain_pictures()
@@ -321,7 +317,3 @@ class Mistakes(Planted):
         self.refused("render.py", "sweep.h5", "--task", "0", words="task 0 of sweep.h5 is not complete yet")
         said = self.run_script("render.py", "sweep.h5", "--size", "30x20").stdout
         self.assertIn("task1", said)
-
-
-if __name__ == "__main__":
-    unittest.main()

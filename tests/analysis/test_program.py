@@ -6,16 +6,13 @@ import re
 import subprocess
 import tempfile
 import unittest
-import unittest.mock
 
-import synthetic  # noqa: F401  (makes analysis/ importable)
+from running import run
 import h5py
 import numpy as np
 import rodsweep
-import temporal
-from rodsweep.reading import along_time, joints, measures, timings, trajectory
+from rodsweep.reading import measures, timings, trajectory
 from rodsweep.reading.sweepfile import SweepFile
-from running import run
 
 ROD = {"type": "bending_rod", "segments": {"grid": [6, 9]}, "length_m": {"uniform": [1, 5]}, "radius_m": 0.05,
        "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6}
@@ -24,6 +21,8 @@ HELIX = {"type": "helix", "segments": 12, "helix_radius_m": 0.5, "helix_height_m
 JOB = {"name": "analysis", "kind": "sweep", "seed": 3, "samples": 2, "scene": {"grid": [ROD, HELIX]},
        "time": {"step_s": 0.02, "steps": 4, "newton_iterations": 3}, "solve": {"method": "cg", "tolerance": 1e-2},
        "guesses": ["zero", "previous", "quadratic", {"oracle": {"error": 0.1}}]}
+CLOSED, SHORT = {"evaluation": "closed_loop"}, {"record": {"solves": "summary"}}    # changes to it
+DATA = {"kind": "dataset", "solve": None, "guesses": None}
 
 
 def program(*words):
@@ -84,7 +83,7 @@ class Program(unittest.TestCase):
             self.assertEqual(rows.cg_s.attrs["units"], "s")
             np.testing.assert_array_equal(results.steps().length_drift, h5["steps/length_drift"][:])
         with self.assertRaisesRegex(rodsweep.UserError, "is a dataset, not the results of a sweep"):
-            rodsweep.open(self.run_job("data", kind="dataset", solve=None, guesses=None))
+            rodsweep.open(self.run_job("data", **DATA))
 
     def test_the_page_shows_the_demo_with_the_tasks_that_it_has(self):
         source = os.environ["SOURCE_DIR"]
@@ -96,7 +95,7 @@ class Program(unittest.TestCase):
     def test_ratios_are_those_of_the_rows_and_of_the_file(self):
         with SweepFile(self.run_job("paired")) as file:
             sims = everything(file)
-            found = {newton: measures.cg_ratios(file, sims, newton).ratio for newton in ("first", "all")}
+            found = {newton: measures.cg_counts(file, sims, newton).ratio for newton in ("first", "all")}
             iterations, newton = file.h5["solves/iterations"][:].astype(float), file.h5["solves/newton"][:]
             for task in range(file.task_count):
                 rows = slice(file.first_solve[task], file.first_solve[task] + file.solves[task])
@@ -111,38 +110,16 @@ class Program(unittest.TestCase):
             self.assertTrue(both[..., :4].all())
             np.testing.assert_allclose(found["first"][both], stored[both])
 
-    def test_times_are_sums_of_the_rows(self):
-        with SweepFile(self.run_job("paired")) as file, unittest.mock.patch.object(timings, "INTERRUPTED", np.inf):
-            sims = everything(file)
-            times = timings.times(file, sims)["all"]
-            rows = slice(file.first_solve[2], file.first_solve[2] + file.solves[2])
-            for name in ("cg_s", "guess_s"):
-                expected = np.nansum(file.h5[f"timing/solves/{name}"][rows].astype(float), axis=0)
-                np.testing.assert_allclose(getattr(times, name)[2], expected, rtol=1e-6)
-            self.assertTrue(np.isfinite(times.direct_s).all() and np.isfinite(times.rest_s).all())
-            for values in timings.speedups({"first": times, "all": times}, "first").values():
-                self.assertTrue((values > 0).all())
-                np.testing.assert_allclose(values[:, 0], 1, rtol=1e-6)
-
-    def test_a_paired_sweep_has_its_figures_and_table(self):
-        path = self.run_job("paired")
-        self.assertEqual(len(self.script("spatial.py", path).split()), 6)
-        said = self.script("summary.py", path)
-        for words in ("6 of 6 tasks ok", "Bending rod, n = 4", "Helix, n = 2", "oracle", "jacobi", "1e-2", "joint gap"):
-            self.assertIn(words, said)
-
     def test_a_closed_loop_pairs_every_guess_with_zero(self):
-        path = self.run_job("closed", evaluation="closed_loop")
+        path = self.run_job("closed", **CLOSED)
         with SweepFile(path) as file:
             self.assertEqual(file.task_count, 24)
             sims = everything(file)
             self.assertTrue(sims.closed_loop)
             self.assertEqual(sims.task.shape, (6, 4))
-            ratio = measures.cg_ratios(file, sims, "first").ratio
+            ratio = measures.cg_counts(file, sims, "first").ratio
             self.assertTrue(np.isfinite(ratio[..., :4]).all())
             np.testing.assert_array_equal(ratio[:, 0, :4], 1)
-        self.assertEqual(len(self.script("spatial.py", path).split()), 6)
-        self.assertIn("closed-loop evaluation", self.script("summary.py", path))
 
     def test_a_guess_that_varies_is_told_apart_by_its_parameters(self):
         varying = {"grid": ["previous", {"oracle": {"error": 0.5}}, {"oracle": {"error": 0.001}}]}
@@ -159,7 +136,6 @@ class Program(unittest.TestCase):
                       "Bending rod, guesses[1] = oracle, guesses[1].oracle.error = 0.5, n = 4",
                       "Bending rod, guesses[1] = oracle, guesses[1].oracle.error = 0.001, n = 4"):
             self.assertIn(words, said)
-        self.assertEqual(len(self.script("spatial.py", path).split()), 2)
         by_error = self.script("summary.py", path, "--by", "guesses[1].oracle.error", "--select", "guesses[1]=oracle")
         self.assertIn("guesses[1].oracle.error = 0.001", by_error)
         self.assertNotIn("previous, n", by_error)
@@ -177,77 +153,12 @@ class Program(unittest.TestCase):
         said = self.script("summary.py", path)
         self.assertIn("solve.norm = natural, solve.preconditioner = icc", said)
 
-    def test_a_direct_only_job_has_times_and_steps(self):
-        path = self.run_job("direct", solve={"method": "direct"}, guesses=[])
-        with SweepFile(path) as file:
-            self.assertEqual((file.guesses, file.zero), ([], None))
-        self.assertIn("Newton its/step", self.script("summary.py", path))
-
     def test_a_summary_has_the_ratios_of_the_full_record(self):
         with SweepFile(self.run_job("paired")) as full, \
-                SweepFile(self.run_job("short", record={"solves": "summary"})) as short:
-            ratios = [measures.cg_ratios(file, everything(file), "first").ratio for file in (full, short)]
+                SweepFile(self.run_job("short", **SHORT)) as short:
+            ratios = [measures.cg_counts(file, everything(file), "first").ratio for file in (full, short)]
             np.testing.assert_array_equal(*ratios)
             self.assertFalse(timings.timed(short))
-        self.assertEqual(len(self.script("spatial.py", short.path).split()), 2)
-        self.assertIn("No times", self.script("summary.py", short.path))
-
-    def test_the_curve_along_the_time_is_that_of_the_rows(self):
-        path = self.run_job("paired")
-        with SweepFile(path) as file:
-            tasks = np.flatnonzero(file.scene_types() == "helix")
-            sims = measures.simulations(file, np.isin(np.arange(file.task_count), tasks))
-            found = along_time.windows(file, sims, "first", [0, 1], [1], width=1)
-            curve = temporal.estimate(sims, found, 0, relative=True).value[:, 1, 0]
-            rows = np.concatenate([np.arange(file.first_solve[t], file.first_solve[t] + file.solves[t]) for t in tasks])
-            first = rows[file.h5["solves/newton"][:][rows] == 0]
-            counts, step = file.h5["solves/iterations"][:][first][..., 1], file.h5["solves/step"][:][first]
-            self.assertTrue((counts >= 0).all())
-            for k in range(4):
-                sums = counts[step == k].sum(axis=0)
-                self.assertAlmostEqual(curve[k], sums[1] / sums[0])
-        self.assertEqual(len(self.script("temporal.py", path, "--scene", "helix").split()), 4)
-
-    def test_heat_maps_of_counts_times_and_steps(self):
-        path = self.run_job("paired")
-        for measure in ("ratio", "matvec-ratio", "speedup-step", "joint-gap"):
-            x = ("--x", "scene.segments", "--y", "scene.length_m", "--measure", measure, "--scene", "bending_rod")
-            self.assertEqual(len(self.script("heatmap.py", path, *x).split()), 2)
-
-    def test_a_long_run_of_cg_and_direct_side_by_side(self):
-        path = self.run_job("long", evaluation="closed_loop", scene=HELIX, guesses=["zero", "previous"],
-                            solve={"method": {"grid": ["cg", "direct"]}, "tolerance": 1e-2})
-        said = self.script("long_term.py", path)
-        for method in ("zero", "previous", "direct"):
-            self.assertIn(f"\n  {method}", said)
-
-    def test_without_a_direct_solve_everything_else_is_there(self):
-        path = self.run_job("by_cg", solve={"method": "cg", "reference": "cg", "tolerance": 1e-2})
-        with SweepFile(path) as file:
-            self.assertTrue(np.isnan(file.h5["timing/solves/direct_s"][:]).all())
-            self.assertTrue((file.h5["tasks/cg_ratio"][:, 0] == 1).all())
-        said = self.script("summary.py", path)
-        self.assertIn("CG ratio", said)
-        self.assertIn("guess + CG", said)
-        self.assertNotIn("nan", said)
-        for script in ("spatial.py", "temporal.py", "export.py"):
-            self.script(script, path)
-
-    def test_an_export_has_the_sums_of_the_file(self):
-        path = self.run_job("paired")
-        rows = [line.split(",") for line in self.script("export.py", path, "--columns", "task,iterations_sum").split()]
-        with SweepFile(path) as file:
-            self.assertEqual(sum(int(row[1]) for row in rows[1:]), file.h5["tasks/iterations_sum"][:].sum())
-        solves = self.script("export.py", path, "--level", "solves", "--columns", "newton", "--guess", "zero").split()
-        with SweepFile(path) as file:
-            self.assertEqual(len(solves) - 1, (file.h5["solves/newton"][:] >= 0).sum())
-
-    def test_a_data_set_has_its_table_and_exports(self):
-        path = self.run_job("data", kind="dataset", solve=None, guesses=None)
-        self.assertIn("advanced by the direct solve, no guesses", self.script("summary.py", path))
-        self.assertEqual(len(self.script("export.py", path).split("\n")), 1 + 6 + 1)
-        self.assertEqual(len(self.script("export.py", path, "--level", "steps").split("\n")), 1 + 24 + 1)
-        self.assertNotIn("first_system", self.script("export.py", path, "--list"))
 
     def test_a_trajectory_is_where_its_rod_is_and_can_be_drawn(self):
         path = self.run_job("frames", scene=ROD, record={"trajectory_every": 2})
@@ -262,19 +173,37 @@ class Program(unittest.TestCase):
                 low, high = shown.ends(0)
                 np.testing.assert_allclose(low[1:], high[:-1], atol=1e-12)
                 self.assertAlmostEqual(np.linalg.norm(high[-1] - low[0]), length)
-                np.testing.assert_array_equal(joints.pairs(shown), [[k, k + 1] for k in range(segments - 1)])
+                np.testing.assert_array_equal(trajectory.joints(shown), [[k, k + 1] for k in range(segments - 1)])
         picture = os.path.join(self.folder.name, "rod.png")
         self.assertEqual(self.script("render.py", path, "--task", "2", "--size", "60x40", "-o", picture).strip(), picture)
         self.assertTrue(os.path.exists(self.script("paraview.py", path, "--task", "2").strip()))
 
-    def test_tasks_that_are_not_complete_are_not_read(self):
-        path = self.run_job("partial")
-        with h5py.File(path, "r+") as h5:
-            h5["tasks/state"][:2] = 0
-        with SweepFile(path) as file:
-            self.assertEqual(len(everything(file)), 4)
-        self.assertIn("4 of 6 tasks ok, none failed, 2 pending", self.script("summary.py", path))
-
-
-if __name__ == "__main__":
-    unittest.main()
+    def test_scripts_read_every_kind_of_file(self):
+        plane = ("--x", "scene.segments", "--y", "scene.length_m", "--scene", "bending_rod", "--measure")
+        kinds = {    # changes to JOB, and scripts with words or the number of lines that they print
+            "paired": ({}, [("spatial.py", 6), ("summary.py", "6 of 6 tasks ok"), ("temporal.py", "--scene", "helix", 4),
+                            *(("heatmap.py", *plane, measure, 2)
+                              for measure in ("ratio", "matvec-ratio", "speedup-step", "joint-gap"))]),
+            "closed": (CLOSED, [("spatial.py", 6), ("summary.py", "closed-loop evaluation")]),
+            "direct": ({"solve": {"method": "direct"}, "guesses": []}, [("summary.py", "Newton its/step")]),
+            "short": (SHORT, [("spatial.py", 2), ("summary.py", "No times")]),
+            "data": (DATA, [("summary.py", "advanced by the direct solve, no guesses"), ("export.py", 1 + 6),
+                            ("export.py", "--level", "steps", 1 + 24)]),
+            "long": ({**CLOSED, "scene": HELIX, "guesses": ["zero", "previous"],
+                      "solve": {"method": {"grid": ["cg", "direct"]}, "tolerance": 1e-2}},
+                     [("long_term.py", f"\n  {method}") for method in ("zero", "previous", "direct")]),
+            "by_cg": ({"solve": {"method": "cg", "reference": "cg", "tolerance": 1e-2}},
+                      [("summary.py", "guess + CG"), ("spatial.py", 6), ("temporal.py", 4), ("export.py", "sample")])}
+        for name, (changes, scripts) in kinds.items():
+            path = self.run_job(name, **changes)
+            for script, *arguments, expected in scripts:
+                with self.subTest(kind=name, script=script, arguments=arguments):
+                    said = self.script(script, path, *arguments)
+                    if isinstance(expected, int):
+                        self.assertEqual(len(said.splitlines()), expected)
+                    else:
+                        self.assertIn(expected, said)
+        with h5py.File(self.run_job("by_cg")) as h5:
+            self.assertTrue(np.isnan(h5["timing/solves/direct_s"][:]).all() and (h5["tasks/cg_ratio"][:, 0] == 1).all())
+        self.assertNotIn("nan", self.script("summary.py", self.run_job("by_cg")))
+        self.assertNotIn("first_system", self.script("export.py", self.run_job("data"), "--list"))

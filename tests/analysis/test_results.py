@@ -1,5 +1,9 @@
-"""rodsweep.open(): frames, blocks and datasets against the planted file; units, missing values, plain refusals."""
+"""rodsweep.open(): frames, blocks and datasets against the planted file; units, missing values, plain refusals. export.py:
+the same rows; options, compressed output."""
 
+import csv
+import gzip
+import io
 import os
 import subprocess
 import sys
@@ -13,10 +17,9 @@ import pandas
 import rodsweep
 from rodsweep.reading import tidy
 from rodsweep.reading.errors import IgnoredData, KeyNotFound
-from running import Folder
+from running import Folder, Scripts
 
-PLANT = synthetic.Plant()
-PLANT.reached = lambda guess, tolerance, newton, segments, draw: guess != "previous" or tolerance > 1e-3
+PLANT = synthetic.Plant(reached=synthetic.unless("previous", 1e-3))
 
 
 class Opened(Folder):
@@ -65,6 +68,25 @@ class Frames(Opened):
         self.assertEqual(results.dataset("solves").iterations.dtype.kind, "f")
         self.assertEqual(str(results.summary().unreached_solves.dtype), "Int64")
 
+    def test_missing_texts_are_nan_and_equal_ones_share_their_memory(self):
+        results = self.open()
+        message = results.tasks().message
+        self.assertEqual((set(message.dropna()), message.notna().sum()), ({"planted"}, 4 * 8))
+        self.assertEqual(len({id(text) for text in message.dropna()}), 1)
+        torn = results.tasks(where="outcome=torn")
+        self.assertEqual((len(torn), list(torn)), (0, list(results.tasks())))
+
+    def test_the_summary_has_the_planted_ratio_with_its_interval_of_what_conditions_choose(self):
+        results = self.open(samples=6)
+        summary = results.summary(by="scene.segments", where=["tolerance=1e-2", "guess=quadratic", "scene.segments=20"])
+        ratios = summary[summary.quantity == "cg_ratio"]
+        self.assertEqual(ratios[["scene", "guess", "tolerance", "simulations", "scene.segments"]].values.tolist(),
+                         [[scene, "quadratic", 0.01, 6, 20] for scene in ("bending_rod", "helix")])
+        for row in ratios.itertuples():
+            self.assertAlmostEqual(row.value, 0.25, delta=0.003)
+            self.assertTrue(row.low <= row.value <= row.high)
+        self.assertEqual(len(results.summary(where=["guess!=zero", "guess=zero"])), 0)
+
     def test_a_tolerance_that_was_not_counted_is_refused(self):
         for reader in (self.open().tasks, self.open().summary):
             with self.assertRaisesRegex(KeyNotFound, "no tolerance meets tolerance=0.02; known: 1e-08, .* 0.01, 0.1"):
@@ -94,16 +116,6 @@ class Frames(Opened):
         self.assertEqual(results.columns("solves").meaning["iterations_1e-2"], "CG iterations; 1e-2")
         self.assertEqual(self.open(failed={}, pending=()).missing, "")
 
-    def test_columns_and_conditions_are_chosen(self):
-        results = self.open()
-        solves = results.solves(["guess", "step", "iterations_1e-2"],
-                                ["newton=0", "guess=zero,quadratic", "scene.segments>=20"])
-        self.assertEqual(list(solves), ["guess", "step", "iterations_1e-2"])
-        self.assertEqual(len(solves), 15 * 2 * 2)
-        self.assertEqual(results.steps("task", "task<2").task.tolist(), [0, 0, 1, 1])
-        self.assertEqual(len(results.tasks(where="outcome=torn")), 0)
-        self.assertEqual(list(results.tasks(where="outcome=torn")), list(results.tasks()))
-
     def test_groups_of_several_columns_are_the_combinations_that_exist(self):
         results = self.open(failed={3: "diverged", 12: "diverged"})    # of both scenes, with few segments
         with warnings.catch_warnings():
@@ -117,12 +129,6 @@ class Frames(Opened):
         self.assertEqual(list(means), ["oracle(0.1)", "previous", "quadratic"])
         self.assertTrue(means.notna().all(axis=None))
         self.assertEqual(len(summary), 2 * 5)    # guesses, and the direct solve
-
-    def test_missing_texts_are_nan_and_equal_ones_share_their_memory(self):
-        message = self.open().tasks().message
-        self.assertEqual(set(message.dropna()), {"planted"})
-        self.assertEqual(message.notna().sum(), 4 * 8)
-        self.assertEqual(len({id(text) for text in message.dropna()}), 1)
 
     def test_blocks_are_the_frame_in_parts_of_bounded_size(self):
         results = self.open()
@@ -138,6 +144,7 @@ class Frames(Opened):
     def test_a_closed_loop_and_direct_simulations_have_frames(self):
         closed = self.open(scenes=("helix",), closed_loop=True, failed={}, pending=()).tasks(where="tolerance=1e-2")
         self.assertEqual(closed.groupby("guess").size().to_dict(), dict.fromkeys(synthetic.GUESSES, 12))
+        self.assertTrue((closed.guess == closed.own_guess).all())    # the guess that advances the rods
         direct = self.open(method="direct", plant=synthetic.Plant())
         self.assertEqual(len(direct.tasks()), 23)
         self.assertEqual(len(direct.steps()), 23 * 2)
@@ -149,26 +156,6 @@ class Frames(Opened):
         self.assertIn("quantity", results.summary(by="scene.segments"))
         self.assertEqual(list(results.blocks("solves")), [])
         self.assertEqual(results.dataset("solves").sizes["row"], 0)
-
-    def test_the_summary_has_the_planted_ratio_with_its_interval(self):
-        summary = self.open(samples=6).summary(by="scene.segments")
-        row, = summary[(summary.quantity == "cg_ratio") & (summary.guess == "quadratic") & (summary.tolerance == 1e-2) &
-                       (summary.scene == "helix") & (summary["scene.segments"] == 20)].itertuples()
-        self.assertAlmostEqual(row.value, 0.25, delta=0.003)
-        self.assertLessEqual(row.low, row.value)
-        self.assertEqual(row.simulations, 6)
-
-    def test_conditions_choose_guesses_and_tolerances_of_the_summary(self):
-        summary = self.open(samples=6).summary(where=["tolerance=1e-2", "guess=quadratic", "scene.segments=20"])
-        ratios = summary[summary.quantity == "cg_ratio"]
-        self.assertEqual(ratios[["scene", "guess", "tolerance", "simulations"]].values.tolist(),
-                         [["bending_rod", "quadratic", 0.01, 6], ["helix", "quadratic", 0.01, 6]])
-        self.assertEqual(len(self.open().summary(where=["guess!=zero", "guess=zero"])), 0)
-
-    def test_a_closed_loop_names_the_guess_that_advances_the_rods(self):
-        results = self.open(scenes=("helix",), closed_loop=True, failed={}, pending=())
-        tasks = results.tasks(where="own_guess=quadratic")
-        self.assertEqual({*tasks.guess, *tasks.own_guess}, {"quadratic"})
 
 
 class Datasets(Opened):
@@ -236,5 +223,112 @@ class Refusals(Opened):
         self.assertIn("rodsweep needs h5py: apt-get install python3-h5py", said.splitlines()[-1])
 
 
-if __name__ == "__main__":
-    unittest.main()
+class Export(Scripts):
+    def rows(self, *arguments):
+        name = os.path.join(self.folder, "out.csv")
+        self.run_script("export.py", "sweep.h5", *arguments, "-o", name, "--force")
+        with open(name, encoding="utf-8", newline="") as text:
+            return list(csv.DictReader(text))
+
+    def test_every_level_has_the_rows_that_rodsweep_open_hands_out(self):
+        def text(said):
+            return pandas.read_csv(io.StringIO(said))
+
+        incomplete = {"failed": {3: "diverged"}, "pending": (4,), "counts_in_rows": True, "plant": PLANT}
+        for settings, levels in ((incomplete, 3), ({"closed_loop": True, "scenes": ("helix",)}, 3),
+                                 ({"method": "direct"}, 2)):
+            self.write(**settings)
+            with rodsweep.open("sweep.h5") as results:
+                for level in ("tasks", "steps", "solves")[:levels]:
+                    with self.subTest(level=level, **settings):
+                        rows = self.run_script("export.py", "sweep.h5", "--level", level).stdout
+                        frame = getattr(results, level)().to_csv(index=False)
+                        pandas.testing.assert_frame_equal(text(rows), text(frame), check_dtype=False)
+                        self.assertNotIn(",-1,", rows)
+
+    def test_conditions_are_on_any_column_and_columns_come_in_the_given_order(self):
+        self.write(scenes=("helix",), counts_in_rows=True)
+        rows = self.rows("--level", "solves", "--columns", "guess,task", "--where", "newton=0", "--where",
+                         "guess=quadratic,previous", "--where", "scene.segments=15:40")
+        self.assertEqual(list(rows[0]), ["guess", "task"])
+        self.assertEqual(len(rows), 8 * 2 * 2)
+        self.assertEqual({row["guess"] for row in rows}, {"previous", "quadratic"})
+        self.assertEqual(self.rows("--where", "outcome=diverged"), [])
+        tolerances = self.rows("--where", "tolerance<=1e-3", "--where", "guess!=zero", "--where", "iterations_sum>=100")
+        self.assertEqual({row["tolerance"] for row in tolerances},
+                         {"0.001", "0.0001", "1e-05", "1e-06", "1e-07", "1e-08"})
+        self.assertGreaterEqual(min(int(row["iterations_sum"]) for row in tolerances), 100)
+        solves = self.rows("--level", "solves", "--tolerance", "1e-2,1e-4")
+        self.assertEqual([name for name in solves[0] if name.startswith("iterations")],
+                         ["iterations_1e-2", "iterations_1e-4"])
+
+    def test_rows_of_a_step_that_newton_left_early_are_left_out(self):
+        self.write(scenes=("helix",))
+        self.changed(("solves/newton", 2, -1))
+        self.assertEqual(len(self.rows("--level", "solves", "--guess", "zero")), 12 * 6 - 1)
+
+    def test_numbers_and_texts_come_back_as_they_are_in_the_file(self):
+        self.write(scenes=("helix",), failed={2: "error"})
+        values = np.random.Generator(np.random.PCG64(2)).normal(size=24)
+        values[3] = np.nan
+        self.changed(("steps/joint_gap", slice(None), values), ("tasks/message", 2, b'say "hi", you\ntwo lines'))
+        found = [row["joint_gap"] for row in self.rows("--level", "steps")]
+        self.assertEqual(found[3], "")
+        self.assertEqual([float(text) for text in found[:3] + found[4:]], [*values[:3], *values[4:]])
+        self.assertEqual({row["task"]: row["message"] for row in self.rows() if row["message"]},
+                         {"2": 'say "hi", you\ntwo lines'})
+
+    def test_a_name_that_ends_in_gz_is_compressed_and_standard_output_has_the_same(self):
+        self.write(scenes=("helix",))
+        said = self.run_script("export.py", "sweep.h5", "-o", "out.csv.gz").stdout
+        self.assertEqual(said, f"{12 * 4 * 8} rows: out.csv.gz\n")
+        with gzip.open(os.path.join(self.folder, "out.csv.gz"), "rt", encoding="utf-8", newline="") as text:
+            compressed = text.read()
+        self.assertEqual(len(list(csv.DictReader(io.StringIO(compressed)))), 12 * 4 * 8)
+        self.assertEqual(self.run_script("export.py", "sweep.h5").stdout, compressed)
+
+    def test_a_file_without_rows_or_columns_that_later_versions_have_is_read(self):
+        self.write(scenes=("helix",), solves=False)
+        self.changed(lambda h5: h5.update({"tasks/matvecs_sum": h5["tasks/iterations_sum"][:] * 2}))
+        self.assertEqual({float(row["matvecs_sum"]) / float(row["iterations_sum"]) for row in self.rows()}, {2.0})
+        self.refused("export.py", "sweep.h5", "--level", "solves", words="no rows of solves")
+
+    def test_parquet_holds_the_rows_of_the_csv_and_needs_pyarrow(self):
+        self.write(scenes=("helix",), failed={3: "diverged"})
+        with unittest.mock.patch.object(pandas.DataFrame, "to_parquet", side_effect=ImportError):
+            self.refused("export.py", "sweep.h5", "-o", "out.parquet", words="pip install pyarrow")
+        self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("out")], [])
+        for level in ("tasks", "solves", "steps"):
+            with unittest.mock.patch.object(pandas.DataFrame, "to_parquet", autospec=True) as written:
+                self.run_script("export.py", "sweep.h5", "--level", level, "-o", "out.parquet", "--force")
+            frame = written.call_args.args[0]
+            read = pandas.read_csv(io.StringIO(self.run_script("export.py", "sweep.h5", "--level", level).stdout))
+            pandas.testing.assert_frame_equal(frame.astype(read.dtypes), read)
+
+    def test_a_terminal_shows_the_first_rows_and_how_many_there_are(self):
+        self.write(scenes=("helix",), samples=1)
+        whole = self.run_script("export.py", "sweep.h5")
+        self.assertEqual(whole.stderr, "")
+        with unittest.mock.patch("export.at_terminal", return_value=True):
+            for level, rows in (("tasks", 96), ("steps", 6)):
+                shown = self.run_script("export.py", "sweep.h5", "--level", level)
+                self.assertEqual(len(shown.stdout.splitlines()), 1 + min(rows, 20))
+                self.assertEqual(shown.stderr, "the first 20 of 96 rows; -o FILE writes all\n" if rows > 20 else "")
+                if level == "tasks":
+                    self.assertEqual(shown.stdout.splitlines(), whole.stdout.splitlines()[:21])
+
+    def test_nothing_is_overwritten_and_mistakes_are_one_line(self):
+        self.write(scenes=("helix",))
+        self.run_script("export.py", "sweep.h5", "-o", "out.csv")
+        for words, *arguments in (("out.csv already exists", "-o", "out.csv"),
+                                  ("sweep.h5 already exists", "-o", "sweep.h5", "--force"),
+                                  ("did you mean iterations_sum?", "--columns", "iterationssum"),
+                                  ("did you mean quadratic?", "--where", "guess=quadratc"),
+                                  ("did you mean time.newton_iterations?\n", "--where", "newton=0"),
+                                  (" more (export.py --list and results.columns()", "--columns", "nope"),
+                                  ("named twice", "--columns", "task,task"),
+                                  ("COLUMN=VALUE", "--where", "newton"), ('"x"', "--where", "sample=x", "-o", "x.csv"),
+                                  ("No such file", "--columns", "task", "-o", "none/out.csv")):
+            self.refused("export.py", "sweep.h5", *arguments, words=words)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["out.csv", "sweep.h5"])
+        self.assertIn("iterations_sum\n", self.run_script("export.py", "sweep.h5", "--list").stdout)

@@ -7,12 +7,11 @@ import subprocess
 import tempfile
 import unittest
 
-import synthetic  # noqa: F401  (makes analysis/ importable)
+from running import Folder, run
 import numpy as np
 from rodsweep.reading import score
 from rodsweep.reading.accuracy import Way, way_of
 from rodsweep.reading.sweepfile import SweepFile
-from running import Folder, run
 
 MODEL = os.path.join(os.environ["SOURCE_DIR"], "network", "pretrained", "rods.h5")
 
@@ -201,7 +200,3 @@ class Files(unittest.TestCase):
             again = run("score.py", "half.py", "rod_test.json", "--workers", "1")
             self.assertEqual(again.stdout, done.stdout)    # of the same results
             self.assertNotIn("new file", again.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,13 +2,12 @@
 
 A shape is a small planted file: without solves, without guesses, with failures only, and so on. No script may blame
 the file, print a value that is not a number, or show a warning. By default, scripts that draw nothing run over all
-shapes, and the others over the shapes in WORST. With the argument `long`, the others run over all shapes in turn.
+shapes, and the others over the shapes in WORST; in Long, the others run over all shapes in turn.
 """
 
 import contextlib
 import os
 import re
-import sys
 import unittest
 import unittest.mock
 import warnings
@@ -267,6 +266,10 @@ SENTENCES = {   # (shape, script): what it says
                                     "8 timed_out",
     ("times that are not numbers", "front"): "sweep.h5 has no times above 0, so the cost of guesses is not known",
     ("xpbd alone", "temporal"): "sweep.h5 has no guesses to compare in the chosen simulations",
+    ("no rows of solves", "front"): "sweep.h5 has no times, so the cost of guesses is not known",
+    ("no rows of solves", "temporal"): "sweep.h5 has no rows of single solves (record.solves is \"summary\"), which this "
+                                       "script needs",
+    ("no zero guess", "combinations"): "sweep.h5 has no preconditioner or no zero guess to compare with",
     ("plain", "balance"): "sweep.h5 has only one kind of step in the chosen simulations: sweep time.balance over false "
                           "and true"}
 EVERY = 4    # a script that draws runs over every fourth shape
@@ -290,7 +293,7 @@ class Shapes(running.Scripts):
             warnings.simplefilter("always")
             if script == "render.py":
                 around.enter_context(unittest.mock.patch("rodsweep.drawing.povray.picture", lambda *_: b""))
-                around.enter_context(unittest.mock.patch("rodsweep.drawing.tools.needed"))
+                around.enter_context(unittest.mock.patch("render.require_program"))
             done = running.run(script, "sweep.h5", *arguments)
             rodsweep.drawing.layout.plt.close("all")    # of a script that stopped before it saved them
         said = done.stdout + done.stderr
@@ -333,7 +336,3 @@ class Long(Shapes):
     def test_figures_of_every_shape(self):
         for number, shape in enumerate(SHAPES):
             self.check(shape, [name for turn, name in enumerate(DRAWING) if (number + turn) % EVERY == 0])
-
-
-if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *(["Long"] if sys.argv[1:] == ["long"] else sys.argv[1:] or ["Short"])])

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """docs/tools/pages.py: numbers of tables in pages; the pages of this repository are current."""
 
 import json
@@ -188,7 +187,3 @@ below
         for template in pages.templates():
             with open(template.removesuffix(".j2"), encoding="utf-8") as page:
                 self.assertNotIn("<!--", page.read())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Pages of the repository: valid links, tables and lists; all pages are in the navigation; docs/keys.md is complete."""
 
 import glob
@@ -227,7 +226,3 @@ class Jobs(unittest.TestCase):
                 ways = (name, begun + name, begun.rpartition("_")[0] + name)
                 found.append(next((way for way in ways if way in known), name))
         return found
-
-
-if __name__ == "__main__":
-    unittest.main()

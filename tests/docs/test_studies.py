@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """jobs/studies.py: lists and runs studies; its commands exist."""
 
 import contextlib
@@ -96,7 +95,3 @@ class Studies(unittest.TestCase):
             if used:
                 told = subprocess.run([ROOT / script, "--help"], capture_output=True, text=True, check=True).stdout
                 self.assertEqual(used - set(re.findall(r"--[\w-]+", told)), set(), script)
-
-
-if __name__ == "__main__":
-    unittest.main()

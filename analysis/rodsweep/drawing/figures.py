@@ -5,7 +5,6 @@ Notes give Newton iterations, norm, tolerance, preconditioner, number of simulat
 
 import numpy as np
 from matplotlib.patches import Patch
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, looks, style
 from rodsweep.drawing.study import sample_text
@@ -18,7 +17,7 @@ FOUR_CURVES = {"ratio": "CG ratio", "share": "time of the guess ÷ time of its C
 
 def ratio_figure(study, tolerances):
     """CG iterations over those from zero: a panel per tolerance, a line per guess."""
-    ratios = measures.cg_ratios(study.file, study.sims, study.newton)
+    ratios = measures.cg_counts(study.file, study.sims, study.newton)
     estimates = [[intervals.mean(ratios.ratio[rows], study.sims.sample[rows]) for rows in points.index]
                  for points in study.points]
     lines = study.lines()
@@ -38,14 +37,10 @@ def ratio_figure(study, tolerances):
     top = 1.06 * max([1.0] + [float(np.nanmax([e.value, e.high])) for e in shown if np.isfinite(e.value)])
     for axes_row, points, row, marks in zip(page.axes, study.points, estimates, open_points):
         for k, (axes, t) in enumerate(zip(axes_row, tolerances)):
-            x = layout.XAxis(points)
-            axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
-            for rank, g in enumerate(lines):
-                _line(axes, x.dodged(rank, len(lines)), [e[g, t] for e in row], study.style(g), points.categorical,
-                      [bool(m[g, t]) for m in marks])
+            _curves(axes, points, [([e[g, t] for e in row], study.style(g), [bool(m[g, t]) for m in marks])
+                                   for g in lines], len(lines))
             axes.set_ylim(0, top)
             axes.set_title("tolerance " + style.tolerance_text(study.file.tolerances[t]))
-            x.apply(axes)
             page.label_y(axes, k, "CG ratio")
     _x_labels(page, study)
     return page
@@ -74,26 +69,15 @@ def speedup_figure(study, by_newton):
     width = study.width_mm
     page = layout.Page(width, [p.caption() for p in study.panels], 3, 3, 40 if study.wide else 34, handles,
                       notes + [study.about()], study.timing_warning(), ticks_mm=_ticks_mm(study))
-    bounds = [v for row in rows for pairs in row.values() for e, d in pairs for part in (*(e[g] for g in lines), d)
-              for v in (part.value, part.low, part.high) if np.isfinite(v) and v > 0]
-    low, high = min([0.8] + [0.92 * b for b in bounds]), max([1.25] + [1.08 * b for b in bounds])
+    shown += [d for row in rows for pairs in row.values() for _, d in pairs]
+    limits = _limits(shown, 0.8, 1.25, 0.08)
     for axes_row, points, row in zip(page.axes, study.points, rows):
         for k, (axes, (name, title)) in enumerate(zip(axes_row, timings.SPEEDUPS.items())):
-            x = layout.XAxis(points)
-            axes.set_yscale("log")
-            axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
-            for rank, g in enumerate(lines):
-                _line(axes, x.dodged(rank, len(lines) + 1), [e[g] for e, _ in row[name]], study.style(g),
-                      points.categorical)
-            if with_direct:
-                _line(axes, x.dodged(len(lines), len(lines) + 1), [d for _, d in row[name]],
-                      style.DIRECT, points.categorical)
-            axes.set_ylim(low, high)
-            axes.yaxis.set_major_locator(FixedLocator(layout.log_ticks(low, high)))
-            axes.yaxis.set_minor_locator(NullLocator())
-            axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}×"))
+            curves = [([e[g] for e, _ in row[name]], study.style(g), None) for g in lines]
+            curves += [([d for _, d in row[name]], style.DIRECT, None)] * with_direct
+            _curves(axes, points, curves, len(lines) + 1)
+            _log_axis(axes, limits, "{:g}×")
             axes.set_title(title)
-            x.apply(axes)
             page.label_y(axes, k, "speedup over zero-guess CG")
     _x_labels(page, study)
     return page
@@ -107,7 +91,7 @@ def four_curves_figure(study, by_newton):
         return None
     file, part = study.file, by_newton[study.newton]
     timed = timings.timed_rung(file)[study.sims.any_task]
-    ratios = measures.cg_ratios(file, study.sims, study.newton).ratio
+    ratios = measures.cg_counts(file, study.sims, study.newton).ratio
     speedups = timings.speedups(by_newton, study.newton)
     curves = {"ratio": ratios[np.arange(len(timed)), :, timed], "share": measures.quotient(part.guess_s, part.cg_s),
               "guess_cg": speedups["guess_cg"], "step": speedups["step"]}
@@ -122,23 +106,13 @@ def four_curves_figure(study, by_newton):
     page = layout.Page(study.width_mm, [p.caption() for p in study.panels], len(learned),
                        layout.even_columns(len(learned), 3 if study.wide else 1), 42, handles,
                        notes + [study.about()], study.timing_warning(), gap_mm=6, ticks_mm=_ticks_mm(study))
-    bounds = [v for e in shown for v in (e.value, e.low, e.high) if np.isfinite(v) and v > 0]
-    low, high = min([0.5] + [0.9 * b for b in bounds]), max([2] + [1.1 * b for b in bounds])
-    low = max(low, 1e-3)
+    low, high = _limits(shown, 0.5, 2, 0.1)
     for axes_row, points, row in zip(page.axes, study.points, rows):
         for k, (axes, g) in enumerate(zip(axes_row, learned)):
-            x = layout.XAxis(points)
-            axes.set_yscale("log")
-            axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
-            for rank, name in enumerate(curves):
-                _line(axes, x.dodged(rank, len(curves)), [at[name][g] for at in row], style.FOUR_CURVES[name],
-                      points.categorical)
-            axes.set_ylim(low, high)
-            axes.yaxis.set_major_locator(FixedLocator(layout.log_ticks(low, high)))
-            axes.yaxis.set_minor_locator(NullLocator())
-            axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            _curves(axes, points, [([at[name][g] for at in row], style.FOUR_CURVES[name], None) for name in curves],
+                    len(curves))
+            _log_axis(axes, (max(low, 1e-3), high), "{:g}")
             page.title(axes, study.file.guesses[g], weight="bold")
-            x.apply(axes)
             page.label_y(axes, k, "ratio or speedup")
     _x_labels(page, study)
     return page
@@ -183,22 +157,39 @@ def time_figure(study, by_newton):
     return page
 
 
+def _curves(axes, points, curves, slots):
+    """Draws (estimates, style, hollow points or None) side by side in `slots`, and the line at 1."""
+    x = layout.XAxis(points)
+    axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
+    for rank, (estimates, look, hollow) in enumerate(curves):
+        _line(axes, x.dodged(rank, slots), estimates, look, points.categorical, hollow)
+    x.apply(axes)
+
+
+def _limits(estimates, low, high, margin):
+    """Limits of a logarithmic axis with all estimates and their intervals; at least these ones."""
+    bounds = [v for e in estimates for v in (e.value, e.low, e.high) if np.isfinite(v) and v > 0]
+    return min([low] + [(1 - margin) * b for b in bounds]), max([high] + [(1 + margin) * b for b in bounds])
+
+
+def _log_axis(axes, limits, text):
+    axes.set(yscale="log", ylim=limits)
+    layout.set_ticks(axes.yaxis, layout.log_ticks(*limits), text.format)
+
+
 def _line(axes, x, estimates, guess_style, categorical, hollow=None, size=None):
     """Values with their intervals; no line joins categories."""
-    value, low, high = (np.array([getattr(e, name) for e in estimates], dtype=float)
-                        for name in ("value", "low", "high"))
     line = {**guess_style.line(), "markersize": size}
     if categorical:
         line["linestyle"] = ""
-    container = style.errorbar(axes, x, value, yerr=style.whiskers(value, low, high), **style.WHISKERS, **line)
+    container = style.errorbar(axes, x, estimates, **style.WHISKERS, **line)
     if container is None:
         return
     for bar in (*container[1], *container[2]):
         bar.set_alpha(0.75)
-    hollow = np.zeros(len(value), dtype=bool) if hollow is None else np.array(hollow)
-    if hollow.any():
-        axes.plot(np.asarray(x)[hollow], value[hollow], linestyle="", marker=guess_style.marker,
-                  color=guess_style.colour, markerfacecolor="white", markeredgewidth=0.8,
+    if hollow is not None and any(hollow):
+        axes.plot(np.asarray(x)[hollow], [e.value for e, left in zip(estimates, hollow) if left], linestyle="",
+                  marker=guess_style.marker, color=guess_style.colour, markerfacecolor="white", markeredgewidth=0.8,
                   zorder=container[0].get_zorder() + 0.1)
 
 
@@ -214,8 +205,7 @@ def _stack(axes, x, estimates):
         axes.bar(left, parts[:, k], width, bottom=bottom, align="edge", color=colour, hatch=hatch, edgecolor="white",
                  linewidth=0.3)
         bottom = bottom + np.nan_to_num(parts[:, k])
-    low, high = (np.array([getattr(e, name)[4] for e in estimates], dtype=float) for name in ("low", "high"))
-    style.errorbar(axes, x.position, total, yerr=style.whiskers(total, low, high), fmt="none", ecolor="#222222",
+    style.errorbar(axes, x.position, [e[4] for e in estimates], fmt="none", ecolor="#222222",
                    **{**style.WHISKERS, "capsize": 1.2})
 
 

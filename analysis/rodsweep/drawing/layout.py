@@ -6,7 +6,7 @@ import textwrap
 import numpy as np
 from matplotlib import pyplot as plt
 from matplotlib.colors import LogNorm
-from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter, NullLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 from matplotlib.transforms import Bbox
 
 from rodsweep.drawing import style
@@ -144,6 +144,13 @@ def log_ticks(low, high):
         if len(ticks) >= 3:
             break
     return ticks[::max(1, len(ticks) // 6)]
+
+
+def set_ticks(axis, ticks, text=texts.number_text):
+    """These ticks alone, each labelled by text(its value)."""
+    axis.set_major_locator(FixedLocator(ticks))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: text(value)))
 
 
 class XAxis:

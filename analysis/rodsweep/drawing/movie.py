@@ -9,7 +9,7 @@ import numpy as np
 from PIL import GifImagePlugin, Image
 from scipy.spatial import cKDTree
 
-from rodsweep.drawing.tools import ToolError
+from rodsweep.reading.errors import ToolError
 
 COLOURS = 255      # of a GIF; all frames share one palette, so that still parts do not flicker
 

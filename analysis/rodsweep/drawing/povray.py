@@ -12,7 +12,7 @@ import tempfile
 import numpy as np
 
 from rodsweep.drawing import staging
-from rodsweep.drawing.tools import ToolError
+from rodsweep.reading.errors import ToolError
 
 SETTINGS = ("-D", "-V", "-GA", "+O-", "+FN8", "-J")
 EDGES = {False: ("+A0.2", "+AM2", "+R2"), True: ("+A0.05", "+AM1", "+R3")}   # antialiasing; fine: three times slower

@@ -134,6 +134,13 @@ def sample_text(estimates, of="", mark="whiskers", point="point"):
     return text + (f"; {mark}: 95 % bootstrap intervals{of}" if has_intervals else "; too few for intervals")
 
 
+def parser(*about, **choices):
+    """commandline.parser() with the options of figures."""
+    made = commandline.parser(*about, **choices)
+    add_figure_arguments(made)
+    return made
+
+
 def add_figure_arguments(made):
     made.add_argument("-o", "--output", metavar="DIR", help="folder of the figures; those of the same name are "
                       "replaced (default: figures/ beside the file)")

@@ -56,10 +56,13 @@ def whiskers(value, low, high):
     return np.nan_to_num(np.stack([value - low, high - value]).clip(min=0))
 
 
-def errorbar(axes, x, y, **drawing):
-    """axes.errorbar() if there is a point to draw; else None. Matplotlib warns without one."""
-    there = np.isfinite(np.asarray(x, dtype=float)) & np.isfinite(np.asarray(y, dtype=float))
-    return axes.errorbar(x, y, **drawing) if there.any() else None
+def errorbar(axes, x, estimates, **drawing):
+    """Draws a list of Estimates, each of a number, with their intervals: axes.errorbar(), or None if there is no point
+    to draw. Matplotlib warns without one."""
+    value, low, high = (np.array([getattr(one, part) for one in estimates], dtype=float)
+                        for part in ("value", "low", "high"))
+    there = np.isfinite(np.asarray(x, dtype=float)) & np.isfinite(value)
+    return axes.errorbar(x, value, yerr=whiskers(value, low, high), **drawing) if there.any() else None
 
 
 def literal(text):

@@ -52,8 +52,8 @@ def way_of(file, task):
     return Way(str(measures.without_guess(file, [task])[0]), newton)
 
 
-def positions(file, task):
-    """[frame, segment, 3]. Raises KeyNotFound if the file has no trajectories."""
+def frames(file, task):
+    """{time in ms, rounded: positions [segment, 3]}. Raises KeyNotFound if the file has no trajectories."""
     if not file.has("/trajectories/position_m"):
         raise KeyNotFound(f"{file.path} has no trajectories: set record.trajectory_every in the job")
     first = file.h5["/trajectories/first_row"][task]
@@ -61,26 +61,25 @@ def positions(file, task):
     if len(first) < 2:
         raise KeyNotFound(f"task {task} has fewer than two frames: make record.trajectory_every smaller")
     count = first[1] - first[0]
-    return file.h5["/trajectories/position_m"][first[0]:first[-1] + count].reshape(len(first), count, 3)
-
-
-def frames(file, task):
-    """{time in ms, rounded: positions [segment, 3]}"""
-    found = positions(file, task)
+    found = file.h5["/trajectories/position_m"][first[0]:first[-1] + count].reshape(len(first), count, 3)
     times = file.h5["/trajectories/time_s"][task][:len(found)]
     return {round(1e3 * time, 3): frame for time, frame in zip(times.tolist(), found)}
 
 
+def distances(path, exact):
+    """[frame]: root mean square distance of the segments in two frames(), after the start and as far as both have them,
+    relative to the diagonal of the box around all segments at the start."""
+    apart = [np.sqrt(np.square(path[time] - exact[time]).sum(axis=1).mean()) for time in path if time > 0 and time in exact]
+    return measures.quotient(apart, np.linalg.norm(np.ptp(exact[0.0], axis=0)))
+
+
 def step_s(file, task):
     """Median wall time of a task's steps. Its rows of solves are in the order of the steps."""
-    def rows(path, first, count):
-        return file.h5[path][first[task]:first[task] + count[task]].astype(float)
-
     def solves(path, column=None):
-        found = rows(path, file.first_solve, file.solves)
+        found = file.rows(path, task).astype(float)
         found = found if column is None else found[:, column]
         return np.nan_to_num(found).reshape(file.steps[task], -1).sum(axis=1)
 
     own = file.own_guess[task]
     solved = solves(DIRECT) if own < 0 else solves(GUESS, own) + solves(CG, own)
-    return np.median(rows(REST, file.first_step, file.steps) + solves(ASSEMBLY) + solved)
+    return np.median(file.rows(REST, task).astype(float) + solves(ASSEMBLY) + solved)

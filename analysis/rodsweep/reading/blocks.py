@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rodsweep.reading import groups, intervals, measures, timings
+from rodsweep.reading import groups, intervals, measures, texts, timings
 
 TIMES = ("assemble_us", "guess_us", "cg_us", "direct_us")
 # The fields of records().
@@ -51,6 +51,19 @@ def blocks(file, sims, by, newton):
     return found
 
 
+def step_measures(found):
+    """The measures.OF_STEPS that any of these Blocks has."""
+    return {name: measure for name, measure in measures.OF_STEPS.items() if any(name in block.steps for block in found)}
+
+
+def step_rows(found, guesses, labels):
+    """[(title, {name: (median, largest), as texts})]: a row per Block, in a closed loop per Block and guess."""
+    return [(f"{block.title}, {labels[g]}" if block.sims.closed_loop else block.title,
+             {name: [texts.short_text(of[g], 2) for of in (estimate.value, largest)]
+              for name, (estimate, largest) in block.steps.items()})
+            for block in found for g in (guesses if block.sims.closed_loop and guesses else [0])]
+
+
 def _measured(file, sims, title, panel, settings, index, newton):
     sims = sims.subset(index)
     parts = {"steps": _steps(file, sims)}
@@ -76,20 +89,15 @@ def _steps(file, sims):
 
 
 def _ratios(file, sims, newton):
-    return {} if file.zero is None else {**_own_ratios(file, sims, newton), "beside": _beside(file, sims, newton)}
-
-
-def _own_ratios(file, sims, newton):
-    ratios = measures.cg_ratios(file, sims, newton)
-    per_solve = intervals.mean(ratios.iterations_per_solve[:, file.zero], resamples=0).value
+    if file.zero is None:
+        return {}
+    ratios = measures.cg_counts(file, sims, newton)
+    beside = {name: intervals.mean(measures.cg_counts(file, sims, of, counted).ratio, sims.sample)
+              for name, (of, counted) in BESIDE[newton].items()}
+    per_solve = intervals.mean(ratios.per_solve[:, file.zero], resamples=0).value
     return {"ratio": intervals.mean(ratios.ratio, sims.sample), "unreached": np.nansum(ratios.unreached, axis=0),
-            "zero_iterations": per_solve if newton == "first" else None}
-
-
-def _beside(file, sims, newton):
-    found = {name: intervals.mean(measures.cg_ratios(file, sims, of, counted).ratio, sims.sample)
-             for name, (of, counted) in BESIDE[newton].items()}
-    return {name: estimate for name, estimate in found.items() if np.isfinite(estimate.value).any()}
+            "zero_iterations": per_solve if newton == "first" else None,
+            "beside": {name: estimate for name, estimate in beside.items() if np.isfinite(estimate.value).any()}}
 
 
 def _times(file, sims, newton):

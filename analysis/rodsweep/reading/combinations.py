@@ -108,7 +108,7 @@ class _Measured:
         self.products, _ = self._per_solve("matvecs", newton, solves)
 
     def _per_solve(self, counted, newton, solves):
-        ratios = measures.cg_sums(self.file, self.sims, newton, counted)
+        ratios = measures.cg_counts(self.file, self.sims, newton, counted)
         return measures.quotient(ratios.own, solves[..., None]), ratios.unreached
 
     def _direct_us(self, times):
@@ -123,7 +123,8 @@ class _Measured:
         guessing = rows[measures.has_guesses(self.file)[self.sims.any_task[rows]]]
         solvers = {}
         for row in guessing:
-            solvers.setdefault(solver_text(self.file, self.sims.any_task[row]), []).append(row)
+            text = preconditioner_text(self.file, self.sims.any_task[row])
+            solvers.setdefault(text.replace("_", " "), []).append(row)
         found = [self._direct(rows, guessing, draws)]
         for solver, members in solvers.items():
             found += [self._of(draws, np.array(members), solver, g) for g in range(len(self.file.guesses))]
@@ -152,11 +153,6 @@ class _Measured:
         return Combination(kind_of(guess), solver, guess, by_draw(self.time_us[rows, g]),
                            by_draw(self.iterations[rows, g]), by_draw(self.products[rows, g]),
                            np.nansum(self.unreached[rows, g], axis=0))
-
-
-def solver_text(file, task):
-    """preconditioner_text() with spaces."""
-    return preconditioner_text(file, task).replace("_", " ")
 
 
 def preconditioner_text(file, task):

@@ -21,10 +21,17 @@ USUAL_WARNING = warnings.formatwarning
 DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
 
-def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True, files=False):
-    """`tolerances`: default in the help, None: no --tolerance; newton: adds --newton; files: several files, not one."""
-    made = argparse.ArgumentParser(description=description, epilog=examples(epilog or ""),
+def plain_parser(description, examples):
+    """The examples have the script's name as it was called: analysis/summary.py, or rodsweep-summary if installed."""
+    name = os.path.basename(sys.argv[0])
+    examples = examples if name.endswith(".py") else re.sub(r"analysis/\w+\.py", name, examples)
+    return argparse.ArgumentParser(description=description, epilog=examples,
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
+def parser(description, examples, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True, files=False):
+    """`tolerances`: default in the help, None: no --tolerance; newton: adds --newton; files: several files, not one."""
+    made = plain_parser(description, examples)
     of_files = {"dest": "files", "nargs": "+", "metavar": "FILE"} if files else {"dest": "file"}
     made.add_argument(**of_files, help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
     made.add_argument("--scene", metavar="TYPE", help="only this type of scene, e.g. bending_rod")
@@ -40,12 +47,6 @@ def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=Tr
         made.add_argument("--newton", choices=list(measures.NEWTON), default="first",
                           help="Newton iterations that count: the first of every step (j = 0, default) or all")
     return made
-
-
-def examples(text):
-    """The examples with the script's name as it was called: analysis/summary.py, or rodsweep-summary if installed."""
-    name = os.path.basename(sys.argv[0])
-    return text if name.endswith(".py") else re.sub(r"analysis/\w+\.py", name, text)
 
 
 def whole_number(text):

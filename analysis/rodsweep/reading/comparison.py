@@ -25,6 +25,7 @@ PLACES = {"/steps": ("first_step", "steps"), "/solves": ("first_solve", "solves"
 NOT_MEASURED = {f"/tasks/{name}" for name in ("state", "checksum", "message", "outcome", *constants.PLANNED)}
 FRAMES = ("/trajectories/position_m", "/trajectories/orientation")
 IGNORED_KEYS = ("name", "description", "$schema")
+SWEEPS = {"grid", "zip", "uniform", "log_uniform", "integer"}
 
 
 @dataclass
@@ -57,16 +58,12 @@ def _flat(value, path=""):
     """{"scene.segments": ...}: objects except sweeps are flattened; each guess has its own key."""
     if path == "guesses" and isinstance(value, list):
         return {f"guesses.{_text(guess)}": guess for guess in value}
-    if isinstance(value, dict) and not _is_sweep(value):
+    if isinstance(value, dict) and not (len(value) == 1 and set(value) <= SWEEPS):
         found = {}
         for key, inner in value.items():
             found |= _flat(inner, f"{path}.{key}" if path else key)
         return found
     return {path: value}
-
-
-def _is_sweep(value):
-    return len(value) == 1 and next(iter(value)) in ("grid", "zip", "uniform", "log_uniform", "integer")
 
 
 def _text(value):
@@ -84,7 +81,8 @@ def match(one, other, by):
         if places.get(key):
             a.append(task)
             b.append(places[key].pop(0))
-    shared = np.array(_guess_places(one, other, by), dtype=int)
+    there = {key: place for place, key in enumerate(_guess_keys(other, by))}
+    shared = np.array([there.get(key, -1) for key in _guess_keys(one, by)], dtype=int)
     guesses = np.tile(shared, (len(a), 1)) if len(shared) else np.empty((len(a), 0), dtype=int)
     for row, (i, k) in enumerate(zip(a, b)):
         if one.own_guess[i] >= 0:    # closed loop: only its own guess
@@ -123,11 +121,6 @@ def _of_guess(name):
     return (int(found.group(1)), found.group(2)) if found else (None, name)
 
 
-def _guess_places(one, other, by):
-    places = {key: place for place, key in enumerate(_guess_keys(other, by))}
-    return [places.get(key, -1) for key in _guess_keys(one, by)]
-
-
 def _guess_keys(file, by):
     """Identity of each guess: its label and, unless by="parameters", its entry in the job's list of guesses, if any."""
     listed = file.job().get("guesses")
@@ -149,15 +142,12 @@ class Comparison:
         self.a, self.b, self.guesses = pairs.a[both], pairs.b[both], pairs.guesses[both]
         self.compared = len(self.a)
         self.columns, self.differing, self.left_out = {}, {}, []
-        for place in np.flatnonzero(self.outcomes_differ()):
+        for place in np.flatnonzero(one.outcome[self.a] != other.outcome[self.b]):
             self.differing[int(place)] = []
         for path in _datasets(one) | _datasets(other):
             self._compare(path)
         self.differing = dict(sorted(self.differing.items()))
         self.damaged = self._damaged()
-
-    def outcomes_differ(self):
-        return self.one.outcome[self.a] != self.other.outcome[self.b]
 
     def _damaged(self):
         sums = [file.h5["/tasks/checksum"][:] if file.has("/tasks/checksum") else None for file in (self.one, self.other)]
@@ -224,7 +214,7 @@ class Comparison:
     def _of_guess(self, file, tasks, guess):
         """Without tasks in which a solve missed the tolerance."""
         found = self._of_solves(file, tasks, ["guess_s", "cg_s"], guess)
-        return np.where(unconverged.counts(file).missed[tasks, guess] > 0, np.nan, found)
+        return np.where(unconverged.solves(file, "missed")[tasks, guess] > 0, np.nan, found)
 
     @staticmethod
     def _of_solves(file, tasks, names, guess=None):
@@ -233,8 +223,8 @@ class Comparison:
         paths = [f"/timing/solves/{name}" for name in names]
         if all(file.has(path) for path in paths):
             for k, task in enumerate(tasks):
-                rows = slice(file.first_solve[task], file.first_solve[task] + file.solves[task])
-                values = sum(file.h5[path][rows if guess is None else (rows, guess)].astype(float) for path in paths)
+                values = sum(file.rows(path, task).astype(float) for path in paths)
+                values = values if guess is None else values[:, guess]
                 values = values[np.isfinite(values)]
                 found[k] = np.median(values) if len(values) else np.nan
         return found
@@ -349,6 +339,4 @@ def _read(dataset, rows):
     if end - begin <= 4 * len(rows):
         return dataset[begin:end][rows - begin]
     order = np.argsort(rows, kind="stable")
-    back = np.empty_like(order)
-    back[order] = np.arange(len(order))
-    return dataset[rows[order]][back]
+    return dataset[rows[order]][np.argsort(order)]

@@ -10,4 +10,5 @@ SCHEMA_VERSION = _said["schema_version"]
 OUTCOMES = _said["outcomes"]    # of tasks
 PLANNED = _said["planned"]      # columns of /tasks that are known before a task runs
 PATHS = _said["paths"]          # keys of jobs whose values are paths
+WITH_FLOOR = _said["with_floor"]    # types of scenes that have a floor y = 0 of their own
 GAUSS_SEIDEL_ITERATIONS = _said["gauss_seidel_iterations"]    # of solve.iterations, which has no column if no task sets it

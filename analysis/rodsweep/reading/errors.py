@@ -3,6 +3,7 @@
 import difflib
 import importlib
 import re
+import shutil
 
 LISTED = 12       # names that a message lists
 CLOSE = 0.7       # difflib's cutoff: one letter of four, or a third of a long word, may be wrong
@@ -12,6 +13,10 @@ NUMBER = re.compile(r"[+-]?[\d.]+(e[+-]?\d+)?")
 
 class UserError(Exception):
     """The one argument is the message."""
+
+
+class ToolError(UserError):
+    """A program that a script needs is missing or failed."""
 
 
 class SweepFileError(UserError):
@@ -32,6 +37,13 @@ def library(name):
         return importlib.import_module(name)
     except ImportError:
         raise UserError(f"{name} is not installed: apt-get install python3-{name}, or pip install {name}") from None
+
+
+def require_program(name, purpose):
+    """Raises ToolError if a program is missing. Its Debian package has the same name."""
+    if shutil.which(name) is None:
+        raise ToolError(f"{name} is not on the PATH ({purpose}): install the Debian package {name} "
+                        "(jobs/studies.py pictures)")
 
 
 def not_found(what, name, known, all_by=""):

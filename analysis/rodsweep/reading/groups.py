@@ -90,7 +90,9 @@ def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
         scenes = np.full(len(tasks), "all scenes")
     members = {}
     for row, task in enumerate(tasks):
-        settings = {key: file.parameters[key].text(task) for key in keys if _says_something(file, key, task)}
+        # Without the parameters of guesses ("guesses[1].oracle.error") and methods that the task does not use.
+        settings = {key: file.parameters[key].text(task) for key in keys
+                    if not key.startswith(("guesses[", "solve.")) or file.parameters[key].applies()[task]}
         members.setdefault((scenes[row], tuple(settings.items())), []).append(row)
     if most is not None and len(members) > most:
         raise KeyNotFound(f"{len(members)} panels are too many for a page (at most {most}): the job also has a "
@@ -138,11 +140,6 @@ def short_titles(panels):
     scenes = {panel.scene for panel in panels}
     return [", ".join(([panel.scene.replace("_", " ")] if len(scenes) > 1 else []) + list(panel.words))
             for panel in panels]
-
-
-def _says_something(file, key, task):
-    """False for a parameter of a guess ("guesses[1].oracle.error") or method that the task does not use."""
-    return not key.startswith(("guesses[", "solve.")) or file.parameters[key].applies()[task]
 
 
 def _keys(x):

@@ -29,6 +29,18 @@ def opened(path, what):
             "not an HDF5 file; give a file written by `rodsweep run`")) from error
 
 
+def require_version(h5, path, version):
+    """Raises SweepFileError for a file of another program, or of another version of ours."""
+    program = as_text(h5.attrs.get("program", ""))
+    if program != PROGRAM:
+        found = f"its root attribute `program` is {program!r}" if program else "it has no root attribute `program`"
+        raise SweepFileError(f"{path} is an HDF5 file, but not one of {PROGRAM}: {found}")
+    found = int(h5.attrs.get("schema_version", 0))
+    if found != version:
+        raise SweepFileError(f"{path} has schema version {found}, these scripts read {version}; "
+                             "use the analysis folder of the rodsweep that wrote it")
+
+
 def is_column(item, rows):
     """Whether an object in a group of columns is one: a user may keep data of another length there."""
     return isinstance(item, h5py.Dataset) and item.shape[:1] == (rows,)

@@ -64,7 +64,7 @@ def per_simulation(shown, name, tolerances):
             name, ("iterations", ""))
         if norm and newton != "first":
             raise KeyNotFound(f"--measure {name} counts only first Newton iterations: remove --newton all")
-        ratios = measures.cg_ratios(file, sims, newton, counted, norm)
+        ratios = measures.cg_counts(file, sims, newton, counted, norm)
         if not np.isfinite(ratios.ratio).any():
             raise KeyNotFound(f"{file.path} has no counts for --measure {name}")
         missed = np.nan_to_num(ratios.unreached) + np.nan_to_num(ratios.unreached_zero)
@@ -72,7 +72,7 @@ def per_simulation(shown, name, tolerances):
             return ratios.ratio[:, :, tolerances], missed[:, :, tolerances]
         if newton != "first":
             raise KeyNotFound("--measure iterations counts only first Newton iterations: remove --newton all")
-        return (part[:, [file.zero]][:, :, tolerances] for part in (ratios.iterations_per_solve, ratios.unreached))
+        return (part[:, [file.zero]][:, :, tolerances] for part in (ratios.per_solve, ratios.unreached))
     if MEASURES[name].timed:
         if not timings.timed(file):
             raise KeyNotFound(f"{file.path} has no times of single solves (record.solves is \"summary\")")

@@ -41,14 +41,14 @@ class Estimate:
         return Estimate(of(self.value), of(self.low), of(self.high), of(self.count))
 
 
-def mean(values, draws=None, level=LEVEL, resamples=RESAMPLES):
+def mean(values, draws=None, resamples=RESAMPLES):
     """Mean over the first axis, without NaN per column; `draws` has the draw of each simulation. Without resamples
     there is no interval."""
-    return _estimate(values, draws, level, resamples, _weighted_means)
+    return _estimate(values, draws, resamples, _weighted_means)
 
 
-def median(values, draws=None, level=LEVEL, resamples=RESAMPLES):
-    return _estimate(values, draws, level, resamples, _weighted_medians)
+def median(values, draws=None, resamples=RESAMPLES):
+    return _estimate(values, draws, resamples, _weighted_medians)
 
 
 def medians(values, draws=None):
@@ -66,28 +66,28 @@ def medians(values, draws=None):
     return estimates
 
 
-def ratio_of_sums(numerator, denominator, draws=None, level=LEVEL, resamples=RESAMPLES):
+def ratio_of_sums(numerator, denominator, draws=None, resamples=RESAMPLES):
     """Ratio of the sums over the first axis; a simulation counts if both values are finite."""
     numerator, denominator = np.asarray(numerator, dtype=float), np.asarray(denominator, dtype=float)
     both = np.isfinite(numerator) & np.isfinite(denominator)
     parts = np.stack([np.where(both, part, np.nan) for part in (numerator, denominator)], axis=-1)
-    return _estimate(parts, draws, level, resamples, _weighted_ratios, parts=2)
+    return _estimate(parts, draws, resamples, _weighted_ratios, parts=2)
 
 
-def mean_over_trainings(values, draws=None, level=LEVEL):
+def mean_over_trainings(values, draws=None):
     """Mean over simulations (first axis) and trainings that differ only in their seed (second axis, at least two). Its
     interval combines two in quadrature: the bootstrap's over simulations for the mean of the trainings, and Student's
     over the means of the trainings, which are too few for resampling."""
     values = np.asarray(values, dtype=float)
     trainings = values.shape[1]
-    found = mean(values.mean(axis=1), draws, level)
+    found = mean(values.mean(axis=1), draws)
     of_trainings = np.nanmean(values, axis=0)
-    half = special.stdtrit(trainings - 1, (1 + level) / 2) * of_trainings.std(axis=0, ddof=1) / np.sqrt(trainings)
+    half = special.stdtrit(trainings - 1, (1 + LEVEL) / 2) * of_trainings.std(axis=0, ddof=1) / np.sqrt(trainings)
     return Estimate(found.value, found.value - np.hypot(found.value - found.low, half),
                     found.value + np.hypot(found.high - found.value, half), found.count)
 
 
-def _estimate(values, draws, level, resamples, statistic, parts=1):
+def _estimate(values, draws, resamples, statistic, parts=1):
     """`parts` numbers of the last axis give one value of the statistic. Columns and resamples come in blocks."""
     values = np.asarray(values, dtype=float)
     if parts == 1:
@@ -110,7 +110,7 @@ def _estimate(values, draws, level, resamples, statistic, parts=1):
         resampled = _resampled(statistic(values[:, of], finite[:, of]), len(block), draws, groups, resamples)
         for n in np.unique(drawn[block]):
             same = drawn[block] == n
-            tail = special.ndtr(-np.sqrt(n / (n - 1)) * special.stdtrit(n - 1, (1 + level) / 2))
+            tail = special.ndtr(-np.sqrt(n / (n - 1)) * special.stdtrit(n - 1, (1 + LEVEL) / 2))
             quantile = np.nanquantile if np.isnan(resampled[:, same]).any() else np.quantile
             low[block[same]], high[block[same]] = quantile(resampled[:, same], [tail, 1 - tail], axis=0)
     return Estimate(*(part.reshape(shape) for part in (value, low, high, finite.sum(axis=0))))

@@ -76,6 +76,15 @@ def census(file, chosen):
                   dict(outcomes))
 
 
+def failures(file, chosen, most):
+    """The first failures of the mask, [(task, outcome, message)], and the number of the others."""
+    failed = np.flatnonzero(chosen & file.complete & ~file.ok)
+    shown = failed[:most].tolist()
+    messages = file.results("message", shown)
+    messages = [""] * len(shown) if messages is None else map(str, messages)
+    return list(zip(shown, map(str, file.outcome[shown]), messages)), len(failed) - len(shown)
+
+
 def has_guesses(file):
     """Mask of the tasks that try guesses: only the method cg does."""
     if not file.guesses:
@@ -123,27 +132,25 @@ def simulations(file, chosen, failed_too=False):
 
 
 @dataclass(frozen=True)
-class Ratios:
-    """[simulation, guess, tolerance]; unreached counts solves, of the guess and of the zero guess."""
-    ratio: np.ndarray
-    iterations_per_solve: np.ndarray
+class Counts:
+    """Sums over a simulation, [simulation, guess, tolerance]; unreached counts solves that missed the tolerance."""
+    own: np.ndarray
+    zero: np.ndarray       # those of the zero guess
     unreached: np.ndarray
     unreached_zero: np.ndarray
     solves: np.ndarray     # [simulation, guess] first Newton iterations; NaN for `all`, which is not stored per task
 
+    @property
+    def ratio(self):
+        return quotient(self.own, self.zero)
 
-@dataclass(frozen=True)
-class Sums:
-    """Sums over a simulation, [simulation, guess, tolerance]; solves are those of Ratios."""
-    own: np.ndarray
-    zero: np.ndarray
-    unreached: np.ndarray
-    unreached_zero: np.ndarray
-    solves: np.ndarray
+    @property
+    def per_solve(self):
+        return quotient(self.own, self.solves[..., None])
 
 
-def cg_sums(file, sims, newton, counted="iterations", norm=""):
-    """Sums of `counted` (iterations or matvecs), or of iterations in the `other_norm`; NaN if the file has none."""
+def cg_counts(file, sims, newton, counted="iterations", norm=""):
+    """Counts of `counted` (iterations or matvecs), or of iterations in the `other_norm`; NaN if the file has none."""
     suffix = f"_{norm}" if norm else "" if newton == "first" else "_all"
     shape = (file.task_count, len(file.guesses), len(file.tolerances))
     tasks = sims.tasks()
@@ -160,33 +167,43 @@ def cg_sums(file, sims, newton, counted="iterations", norm=""):
     done = file.results("steps_done", tasks)
     if newton == "first" and done is not None:
         steps[tasks] = done[:, None]
-    return Sums(sims.gather(iterations), sims.gather(iterations, file.zero), sims.gather(unreached),
-                sims.gather(unreached, file.zero), sims.gather(steps))
-
-
-def cg_ratios(file, sims, newton, counted="iterations", norm=""):
-    sums = cg_sums(file, sims, newton, counted, norm)
-    own, solves = sums.own, sums.solves
-    return Ratios(quotient(own, sums.zero), quotient(own, solves[..., None]), sums.unreached, sums.unreached_zero, solves)
+    return Counts(sims.gather(iterations), sims.gather(iterations, file.zero), sims.gather(unreached),
+                  sims.gather(unreached, file.zero), sims.gather(steps))
 
 
 def solved(file, sims, newton):
     """Mask of the simulations in which a solve took an iteration. Others have no CG ratio: rods at rest, or in free
     fall, need no linear solve."""
-    own = cg_sums(file, sims, newton).own.reshape(len(sims), -1)
+    own = cg_counts(file, sims, newton).own.reshape(len(sims), -1)
     return (own > 0).any(axis=1) | ~np.isfinite(own).any(axis=1)
 
 
-LARGEST = ("newton_residual", "momentum_residual", "length_drift", "joint_gap", "penetration", "contact_residual")
+@dataclass(frozen=True)
+class OfSteps:
+    """A result of the steps: its headings in tables and on pages, and the title of its chart, if it has one."""
+    column: str
+    title: str
+    chart: str = ""
+
+
+# By column of /steps. Of a simulation: the mean over its steps for newton_iterations, else the largest magnitude.
+OF_STEPS = {
+    "newton_iterations": OfSteps("Newton its/step", "Newton iterations a step", "Newton iterations of a step"),
+    "newton_residual": OfSteps("Newton residual", "Newton residual", "largest Newton residual at the end of a step"),
+    "momentum_residual": OfSteps("momentum residual", "momentum residual"),
+    "length_drift": OfSteps("length drift", "length drift", "largest length drift of a simulation"),
+    "joint_gap": OfSteps("joint gap/length", "joint gap / length", "largest joint gap, over the length"),
+    "penetration": OfSteps("penetration/radius", "penetration / radius", "deepest penetration, over the radius"),
+    "contact_residual": OfSteps("contact residual/radius", "contact residual / radius"),
+}
 
 
 def step_figures(file, sims):
-    """{column of /steps: [simulation, guess]}: the mean number of Newton iterations of a step, the largest magnitude of
-    others; NaN where it does not apply. A paired sweep has one trajectory for all guesses."""
+    """{name in OF_STEPS: [simulation, guess]}; NaN where it does not apply. A paired sweep has one trajectory for all
+    guesses."""
     tasks = sims.tasks()
-    wanted = {name: f"/steps/{name}" for name in ("newton_iterations", *LARGEST)}
-    wanted = {name: path for name, path in wanted.items() if file.has(path)}
-    largest = {name: np.full(file.task_count, np.nan) for name in LARGEST}
+    wanted = {name: f"/steps/{name}" for name in OF_STEPS if file.has(f"/steps/{name}")}
+    largest = {name: np.full(file.task_count, np.nan) for name in OF_STEPS if name != "newton_iterations"}
     newton, steps = np.zeros(file.task_count), np.zeros(file.task_count)
     for owners, starts, rows in file.step_blocks(tasks, list(wanted.values())):
         for name in largest.keys() & wanted.keys():

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rodsweep.reading.errors import SweepFileError
-from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, opened
+from rodsweep.reading.hdf5 import UNREADABLE, as_text, opened, require_version
 
 SCHEMA_VERSION = 2
 
@@ -47,15 +47,11 @@ def read(path):
     """The training in a model file, ended or running. Raises SweepFileError."""
     with opened(path, "a model file") as h5:
         try:
-            if as_text(h5.attrs.get("program", "")) != PROGRAM:
-                raise SweepFileError(f"{path} is an HDF5 file, but not one of {PROGRAM}")
+            require_version(h5, path, SCHEMA_VERSION)
             kind = as_text(h5.attrs.get("kind", "sweep"))
             if kind != "model":
                 raise SweepFileError(f"{path} holds the results of a {kind}, not a model: give the file of a job of kind "
                                      '"train"')
-            version = int(h5.attrs["schema_version"])
-            if version != SCHEMA_VERSION:
-                raise SweepFileError(f"{path} has schema version {version}, these scripts read {SCHEMA_VERSION}")
             training = h5["training"]
             found = Training(os.fspath(path), as_text(h5["job"].attrs["name"]), as_text(training.attrs["ending"]) != "none",
                              h5["axes/tolerance"][:], training["training_loss"][:], training["validation_loss"][:],

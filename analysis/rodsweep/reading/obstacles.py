@@ -1,15 +1,16 @@
 """Obstacles of a task: balls, capsules and half-spaces, in metres, at time 0; at(time_s) gives them at a later time.
 
 Obstacles of a job are columns of /tasks/parameters, scene.obstacles[k].KIND.KEY. They are NaN if the task has no
-obstacle, or one of another kind, at index k. falling_rods and coiling_rod have their own floor y = 0. Rods without
-contact pass through all obstacles, so their tasks have none.
+obstacle, or one of another kind, at index k. Some scenes have their own floor y = 0. Rods without contact pass through
+all obstacles, so their tasks have none.
 """
 
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-FLOORED = ("falling_rods", "coiling_rod")   # scenes with a floor of their own (solver/scene/scenes.cpp)
+from rodsweep.reading import constants
+
 PIECES = 33       # spheres that approximate a capsule in the search for its near parts
 LEVEL = 1e-9      # 1 - cosine of the angle up to which a plane is horizontal
 DISC = 0.5        # radius of the visible part of a plane, as a share of the scene's extent
@@ -60,7 +61,7 @@ def of_task(file, task):
     """Obstacles in the order of the job; the scene's own floor comes first."""
     if value(file, "scene.contact.friction", task) is None:
         return []
-    found = [HalfSpace(np.zeros(3), np.array([0.0, 1, 0]))] if file.scene_types()[task] in FLOORED else []
+    found = [HalfSpace(np.zeros(3), np.array([0.0, 1, 0]))] if file.scene_types()[task] in constants.WITH_FLOOR else []
     place = 0
     while (obstacle := at_place(file, place, task)) is not None:
         found.append(obstacle)

@@ -100,7 +100,9 @@ def runs(file):
         for task in of[step[of] > step[best]]:
             setting = Setting(accuracy.way_of(file, task), str(file.parameter(INTEGRATOR).values[task]), float(step[task]),
                               _solve_entry(file, task, keys[method[task]]), seeds)
-            error = distance(accuracy.frames(file, task), exact) if file.ok[task] else np.inf
+            error = np.inf
+            if file.ok[task]:
+                error = max(accuracy.distances(accuracy.frames(file, task), exact), default=np.nan)
             rows.setdefault(setting, []).append((draw, error, *_effort(file, task)))
     if not rows:
         raise KeyNotFound(f"{file.path} has nothing to compare: give {STEP} several values, the smallest of the reference")
@@ -233,20 +235,12 @@ def _value(file, task, key):
     return parameter.values[task].item() if parameter and parameter.applies()[task] else None
 
 
-def distance(path, exact):
-    """The error of a trajectory, over the frames after the start that both have; NaN if there are none."""
-    apart = [np.sqrt(np.square(path[time] - exact[time]).sum(axis=1).mean()) for time in path if time > 0 and time in exact]
-    size = np.linalg.norm(np.ptp(exact[0.0], axis=0))
-    return float(measures.quotient(max(apart), size)) if apart else np.nan
-
-
 def _effort(file, task):
     """(wall seconds, products) per simulated second."""
-    rows = slice(file.first_step[task], file.first_step[task] + file.steps[task])
-    seconds = file.h5[REST][rows].astype(float) + file.h5[SOLVE][rows]
+    seconds = file.rows(REST, task).astype(float) + file.rows(SOLVE, task)
     seconds = seconds[np.isfinite(seconds)]
     if not len(seconds):
         return np.nan, np.nan
     simulated = len(seconds) * float(file.parameter(STEP).values[task])
-    products = file.h5["/steps/products"][rows][:len(seconds)]
+    products = file.rows("/steps/products", task)[:len(seconds)]
     return np.minimum(seconds, CLIPPED * np.median(seconds)).sum() / simulated, products.sum() / simulated

@@ -16,7 +16,7 @@ import numpy as np
 
 from rodsweep.reading.constants import SCHEMA_VERSION
 from rodsweep.reading.errors import IgnoredData, SweepFileError, listed, not_found
-from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, is_column, opened
+from rodsweep.reading.hdf5 import UNREADABLE, as_text, decoded, is_column, opened, require_version
 from rodsweep.reading.parameters import Parameter
 
 BLOCK_ROWS = 1 << 17
@@ -46,14 +46,7 @@ class SweepFile:
         self.h5.close()
 
     def _open(self):
-        program = as_text(self.h5.attrs.get("program", ""))
-        if program != PROGRAM:
-            found = f"its root attribute `program` is {program!r}" if program else "it has no root attribute `program`"
-            raise SweepFileError(f"{self.path} is an HDF5 file, but not one of {PROGRAM}: {found}")
-        version = int(self.h5.attrs.get("schema_version", 0))
-        if version != SCHEMA_VERSION:
-            raise SweepFileError(f"{self.path} has schema version {version}, these scripts read {SCHEMA_VERSION}; "
-                                 "use the analysis folder of the rodsweep that wrote it")
+        require_version(self.h5, self.path, SCHEMA_VERSION)
         if not self.has("/tasks/state"):
             kind = as_text(self.h5.attrs.get("kind", ""))
             raise SweepFileError(f"{self.path} is a rodsweep file{f' of kind {kind}' if kind else ''} "
@@ -180,6 +173,11 @@ class SweepFile:
         except ValueError:
             return {}
         return parsed if isinstance(parsed, dict) else {}
+
+    def rows(self, path, task):
+        """The rows of a complete task in a dataset of solves or steps."""
+        first, count = (self.first_step, self.steps) if "/steps/" in path else (self.first_solve, self.solves)
+        return self.h5[path][first[task]:first[task] + count[task]]
 
     def solve_blocks(self, tasks, columns, limit=BLOCK_ROWS):
         """Yields (tasks of the block, start of each within it, {column: rows}) over the tasks' rows of /solves."""

@@ -1,4 +1,5 @@
-"""The tasks of a results file as flat columns, a value per task; each column is read when it is needed.
+"""The columns of a results file: its datasets with a row per task, solve or step, and what the file says about them. So
+columns of later versions are included. The tasks as flat columns, a value per task, each read when it is needed:
 
   task, state ("done", "pending"), outcome, message
   scene.segments, scene.gravity_m_s2.x, ...   /tasks/parameters
@@ -11,13 +12,44 @@ tasks are conditions on these columns, in every command and in Python.
 """
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from rodsweep.reading import columns, conditions, constants, texts
+from rodsweep.reading import conditions, constants, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
-from rodsweep.reading.hdf5 import decoded
+from rodsweep.reading.hdf5 import as_text, decoded, is_column
 from rodsweep.reading.sweepfile import ALL_BY
+
+FIRST_ROWS = tuple(name for name in constants.PLANNED if name.startswith("first_"))    # of a task in other groups
+
+
+class Dataset(NamedTuple):
+    path: str
+    axes: tuple     # after the row: (), ("guess",), ("guess", "tolerance"), ("component",) of at most four, or ("other",)
+    unit: str
+    meaning: str
+    dtype: np.dtype
+    planned: bool   # known before a task runs
+
+
+def datasets(file, folder, rows):
+    """{name: Dataset} of those in a group that have this many rows."""
+    found = {}
+    for name, item in file.h5[folder].items() if folder in file.h5 else ():
+        if is_column(item, rows) and item.size:
+            unit, meaning = (as_text(item.attrs.get(key, "")) for key in ("unit", "meaning"))
+            planned = folder == "/tasks" and name in constants.PLANNED
+            found[name] = Dataset(f"{folder}/{name}", _axes(file, folder, item.shape[1:]), unit, meaning, item.dtype, planned)
+    return found
+
+
+def _axes(file, folder, lengths):
+    """Names of the axes, derived from their lengths."""
+    known = {(len(file.guesses),): ("guess",), (len(file.guesses), len(file.tolerances)): ("guess", "tolerance")}
+    if lengths in known and not folder.endswith("/steps"):
+        return known[lengths]
+    return () if not lengths else ("component",) if len(lengths) == 1 and lengths[0] <= 4 else ("other",)
 
 
 @dataclass(frozen=True)
@@ -34,10 +66,11 @@ class TaskColumn:
     result: bool = False    # not known before the task is done
     guess: str = ""
     by_tolerance: bool = False
+    words: tuple = ()       # all texts that it can hold, if known
 
 
 class TaskColumns:
-    """`names`: names of all columns, in order."""
+    """A mapping of names to columns for conditions.parse(), with any tolerance. `names`: of all columns, in order."""
 
     def __init__(self, file):
         self.file = file
@@ -45,12 +78,22 @@ class TaskColumns:
         self.closed_loop = bool((file.own_guess >= 0).any())
         self.columns = {}
         self._add(TaskColumn("task", meaning="number of the task: its row in /tasks", whole=True))
-        self._add(TaskColumn("state", meaning='"done" or "pending"', numeric=False, result=True))
+        self._add(TaskColumn("state", meaning='"done" or "pending"', numeric=False, result=True,
+                             words=("done", "pending")))
         self._add_datasets("/tasks")
         for _, parameter in sorted(file.parameters.items()):
             self._add_parameter(parameter)
         self._add_datasets("/timing/tasks")
         self.names = list(self.columns)
+
+    def __iter__(self):
+        return iter(self.names)
+
+    def __contains__(self, name):
+        try:
+            return bool(self[name])
+        except KeyNotFound:
+            return False
 
     def __getitem__(self, name):
         """The column of a name, which may end in @TOLERANCE. Raises KeyNotFound if there is none."""
@@ -68,11 +111,7 @@ class TaskColumns:
 
     def condition(self, text):
         """A condition on a column of this table."""
-        return self.checked(conditions.parse(text, self.known(), ALL_BY))
-
-    def known(self):
-        """The columns for conditions.parse()."""
-        return _Known(self)
+        return self.checked(conditions.parse(text, self, ALL_BY))
 
     def checked(self, condition):
         """The condition. Raises KeyNotFound if none of the tasks can meet it, whatever their results are."""
@@ -133,7 +172,7 @@ class TaskColumns:
         self.columns[column.name] = column
 
     def _add_datasets(self, group):
-        for name, column in columns.datasets(self.file, group, self.file.task_count).items():
+        for name, column in datasets(self.file, group, self.file.task_count).items():
             if group != "/tasks" or name not in ("state", "checksum"):
                 self._add_dataset(name, column)
 
@@ -148,10 +187,11 @@ class TaskColumns:
 
     def _add_dataset(self, name, column):
         made = TaskColumn(name, column.path, (), without_one(column.unit), column.meaning, column.dtype.kind in "iuf",
-                          column.dtype.kind in "iu", result=not column.planned)
+                          column.dtype.kind in "iu", result=not column.planned,
+                          words=tuple(constants.OUTCOMES) if name == "outcome" else ())
         if name == "own_guess":
             made = replace(made, meaning="the guess that advances the rods; none: another method does", numeric=False,
-                           whole=False)
+                           whole=False, words=tuple(self.file.guesses))
         if not column.axes:
             self._add(made)
         elif "guess" in column.axes:
@@ -163,25 +203,3 @@ class TaskColumns:
 
 def without_one(unit):
     return "" if unit == "1" else unit
-
-
-class _Known:
-    """The columns for conditions.parse(): with the words that they can hold, and with any tolerance."""
-
-    def __init__(self, table):
-        self.table = table
-        self.words = {"state": ("done", "pending"), "outcome": tuple(constants.OUTCOMES),
-                      "own_guess": tuple(table.file.guesses)}
-
-    def __iter__(self):
-        return iter(self.table.names)
-
-    def __contains__(self, name):
-        try:
-            self.table[name]
-        except KeyNotFound:
-            return False
-        return True
-
-    def __getitem__(self, name):
-        return conditions.Column(self.table[name].numeric, self.words.get(name, ()))

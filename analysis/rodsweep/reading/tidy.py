@@ -12,14 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rodsweep.reading import columns, conditions, measures, texts
+from rodsweep.reading import conditions, measures, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
 from rodsweep.reading.hdf5 import decoded
-from rodsweep.reading.task_columns import TaskColumns
+from rodsweep.reading.task_columns import FIRST_ROWS, TaskColumns, datasets
 
 LEVELS = ("tasks", "solves", "steps")
 BLOCK_ROWS = 1 << 13
-INTERNAL = ("state", "checksum", *columns.FIRST_ROWS)
+INTERNAL = ("state", "checksum", *FIRST_ROWS)
 COMPONENTS = ("x", "y", "z")
 OF_TASKS = ("task", "outcome", "sample", "own_guess", "point")    # loaded for every task
 OWN_MEANING = {"guess": "label of the initial guess",
@@ -68,11 +68,11 @@ class Tidy:
         self.file, self.level, self.tasks = file, level, np.asarray(tasks)
         self.guesses, self.tolerances = list(guesses), list(tolerances)
         self.labels, self.guessing = np.array(file.guesses, dtype=str), measures.has_guesses(file)
-        self.datasets, self.whole, self.of_tasks = {}, {}, TaskColumns(file)
+        self.datasets, self.parts, self.whole, self.of_tasks = {}, {}, {}, TaskColumns(file)
         mark = mark_of(file, level)
         rows = file.task_count if level == "tasks" else len(file.h5[mark]) if mark else 0
         for folder in (f"/{level}", f"/timing/{level}"):
-            for name, column in columns.datasets(file, folder, rows).items():
+            for name, column in datasets(file, folder, rows).items():
                 if name not in INTERNAL:
                     self.datasets.setdefault(name, column)
         axes = {axis for column in self.datasets.values() for axis in column.axes}
@@ -88,25 +88,22 @@ class Tidy:
         names += ["guess"] if self.by_guess else []
         names += ["tolerance"] if self.by_tolerance else []
         for name, column in self.datasets.items():
-            axes = column.axes
-            if "other" in axes or name in names:
+            if "other" in column.axes or name in names:
                 continue
-            if axes == ("component",):
+            parts = {}    # one column for each, and its index
+            if column.axes == ("component",):
                 count = self.file.h5[column.path].shape[1]
-                names += [f"{name}_{COMPONENTS[k] if count == 3 else k}" for k in range(count)]
-            elif "tolerance" in axes and not self.by_tolerance:
-                names += [f"{name}_{self._label(t)}" for t in self.tolerances]
-            else:
-                names.append(name)
+                parts = {COMPONENTS[k] if count == 3 else k: k for k in range(count)}
+            elif "tolerance" in column.axes and not self.by_tolerance:
+                parts = {texts.tolerance_label(self.file.tolerances[t]): t for t in self.tolerances}
+            self.parts.update({f"{name}_{part}": (column, index) for part, index in parts.items()})
+            names += [f"{name}_{part}" for part in parts] or [name]
         return names + [name for name in self.file.parameters if name not in names and name != "guess"]
 
     def default_names(self):
         """All names except parameters that are the same for every task."""
         fixed = set(self.file.parameters) - {*self.swept, "scene.type", "guess"}
         return [name for name in self.names if name not in fixed]
-
-    def _label(self, t):
-        return texts.tolerance_label(self.file.tolerances[t])
 
     def check(self, names):
         for name in names:
@@ -117,7 +114,7 @@ class Tidy:
         """The type of a column's values."""
         if not self._is_measured(name):
             return self.shared(name).dtype
-        stored = self.datasets[self._source(name)[0]].dtype
+        stored = self._source(name)[0].dtype
         return stored if stored.kind in "iuf" else np.dtype(str)
 
     def about(self, name):
@@ -128,16 +125,16 @@ class Tidy:
             return self.file.parameters[name].unit, self.file.parameters[name].meaning
         if name in OF_TASKS:
             return self.of_tasks[name].unit, self.of_tasks[name].meaning
-        base, index = self._source(name)
-        column = self.datasets[base]
-        return column.unit, column.meaning if index is None else f"{column.meaning}; {name[len(base) + 1:]}".removeprefix("; ")
+        column, index = self._source(name)
+        part = "" if index is None else name.rpartition("_")[2]
+        return column.unit, "; ".join(filter(None, [column.meaning, part]))
 
     def condition(self, text):
         """Parses a condition on a column of these rows or of their tasks; see conditions.py."""
         of_rows = {name: conditions.Column(self.dtype(name).kind in "iuf",
                                            tuple(self.file.guesses) if name == "guess" else ())
                    for name in self.names if self._in_rows(name) or name in conditions.OF_ROWS}
-        made = conditions.parse(text, ChainMap(of_rows, self.of_tasks.known()), ALL_BY)
+        made = conditions.parse(text, ChainMap(of_rows, self.of_tasks), ALL_BY)
         if made.column not in of_rows:
             return self.of_tasks.checked(made)
         if made.column == "guess":
@@ -217,7 +214,7 @@ class Tidy:
         return mask & self.guessing[tasks] if self.level == "tasks" else mask
 
     def _paths(self, names):
-        return list(dict.fromkeys(self.datasets[self._source(name)[0]].path for name in names if self._is_measured(name)))
+        return list(dict.fromkeys(self._source(name)[0].path for name in names if self._is_measured(name)))
 
     def _row_blocks(self, chosen, paths):
         """Yields (task of every row, {dataset: rows}) without rows that were never reached."""
@@ -251,7 +248,7 @@ class Tidy:
     def _in_rows(self, name):
         """Whether a column may differ between the rows of a task."""
         return name in self.names and self._is_measured(name) and (
-            self.level != "tasks" or bool(self.datasets[self._source(name)[0]].axes))
+            self.level != "tasks" or bool(self._source(name)[0].axes))
 
     def _column(self, name, tasks, rows, parts, g, t):
         """The Column of a name. `parts` caches a block's columns, so that guesses share an array if it is equal for
@@ -259,12 +256,12 @@ class Tidy:
         if not self._is_measured(name):
             index = {"guess": g, "tolerance": t}
             return Column(self.shared(name), np.full(len(tasks), index[name]) if name in index else tasks)
-        base, index = self._source(name)
-        axes = self.datasets[base].axes
+        column, index = self._source(name)
+        axes = column.axes
         where = () if not axes else (index,) if axes == ("component",) else \
             (g,) if axes == ("guess",) else (g, t if index is None else index)
         if (name, where) not in parts:
-            parts[name, where] = rows[self.datasets[base].path][(slice(None), *where)]
+            parts[name, where] = rows[column.path][(slice(None), *where)]
         return Column(parts[name, where])
 
     def _of_tasks(self, name):
@@ -275,10 +272,5 @@ class Tidy:
         return self.whole[name]
 
     def _source(self, name):
-        """The dataset of a column and the index of its component or tolerance."""
-        if name in self.datasets:
-            return name, None
-        base, _, last = name.rpartition("_")
-        if self.datasets[base].axes == ("component",):
-            return base, COMPONENTS.index(last) if last in COMPONENTS else int(last)
-        return base, next(t for t in self.tolerances if self._label(t) == last)
+        """The Dataset of a column and the index of its component or tolerance."""
+        return self.parts[name] if name in self.parts else (self.datasets[name], None)

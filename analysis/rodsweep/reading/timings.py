@@ -108,7 +108,7 @@ def times(file, sims):
                 np.add.at(sums[which][name], owners, np.add.reduceat(values.astype(float), starts, axis=0))
     rest = np.broadcast_to(_rest_s(file, tasks)[:, None], (file.task_count, guesses))
     first, every = _scale(sums["first"]), _scale(sums["later"])  # in place: these arrays are most of the memory
-    missed = unconverged.counts(file).missed
+    missed = unconverged.solves(file, "missed")
     found = {"first": _gathered(sims, zero, first, rest, missed)}
     for name in list(first):
         every[name] += first.pop(name)

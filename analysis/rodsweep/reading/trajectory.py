@@ -9,11 +9,15 @@ from dataclasses import dataclass
 
 import h5py
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from rodsweep.reading import commandline
 from rodsweep.reading.errors import KeyNotFound
 
 SEGMENTS = "/trajectories/segments"
+NEAR = 1e-3   # points this close, as a share of the shortest segment's length, are one
 
 
 @dataclass(frozen=True)
@@ -81,6 +85,29 @@ def axis(orientation):
     """Third column of the rotation matrices of unit quaternions (w, x, y, z)."""
     w, x, y, z = np.moveaxis(orientation, -1, 0)
     return np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+
+
+def meeting(points, rod, reach):
+    """(number of places, the place of each point): points of one rod that are at most `reach` apart are one place."""
+    near = cKDTree(points).query_pairs(reach, output_type="ndarray").reshape(-1, 2)
+    near = near[rod[near[:, 0]] == rod[near[:, 1]]]
+    links = coo_matrix((np.ones(len(near)), tuple(near.T)), shape=(len(points), len(points)))
+    return connected_components(links, directed=False)
+
+
+def joints(trajectory):
+    """[joint, 2] numbers of segments of one rod that share an end or the middle in the first frame. If several meet,
+    all are joined to the first of them."""
+    points = np.concatenate([*trajectory.ends(0), trajectory.centres(0)])
+    count = len(trajectory.length)
+    near = NEAR * trajectory.length[trajectory.length > 0].min(initial=np.inf)
+    _, point = meeting(points, np.tile(trajectory.rod, 3), near if np.isfinite(near) else 0)
+    segment = np.arange(len(points)) % count
+    order = np.lexsort((segment, point))
+    first = np.r_[True, np.diff(point[order]) > 0]
+    hub = segment[order][np.flatnonzero(first)[np.cumsum(first) - 1]]
+    found = np.stack([hub, segment[order]], axis=1)[hub != segment[order]]
+    return np.unique(found, axis=0)
 
 
 def of_task(file, task):

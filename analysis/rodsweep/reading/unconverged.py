@@ -5,38 +5,28 @@ CG has no time in a task where one of a guess's timed solves missed the toleranc
 the others. In a closed loop such a task fails.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from rodsweep.reading import texts
 
-TIMED, MISSED = "/timing/tasks/solves_timed", "/timing/tasks/solves_missed"
 RESIDUAL, NEWTON_TOLERANCE = "/steps/newton_residual", "time.newton_tolerance"
 LARGE = 10_000               # a step ends far from the Newton tolerance if its residual is this many times that
 LEAST_TOLERANCE = 1e-9       # the default; residuals do not fall much below
 TASKS_SHOWN = 5
 
 
-@dataclass(frozen=True)
-class Counts:
-    """Solves by [task, guess]; 0 of tasks that are not ok, and in files that are older than these columns."""
-    timed: np.ndarray
-    missed: np.ndarray
-
-
-def counts(file):
-    def column(path):
-        empty = np.zeros((file.task_count, len(file.guesses)), dtype=np.int64)
-        return np.where(file.ok[:, None], np.maximum(file.h5[path][:], 0), 0) if file.has(path) else empty
-
-    return Counts(column(TIMED), column(MISSED))
+def solves(file, which):
+    """Number of solves that were "timed", or that "missed" the tolerance, by [task, guess]; 0 of tasks that are not ok,
+    and in files that are older than these columns."""
+    path = f"/timing/tasks/solves_{which}"
+    if not file.has(path):
+        return np.zeros((file.task_count, len(file.guesses)), dtype=np.int64)
+    return np.where(file.ok[:, None], np.maximum(file.h5[path][:], 0), 0)
 
 
 def missed_text(file, tasks):
     """A sentence on the timed solves of some tasks that missed their tolerance; empty if there are none."""
-    of = counts(file)
-    timed, missed = of.timed[tasks].sum(), of.missed[tasks].sum(axis=0)
+    timed, missed = solves(file, "timed")[tasks].sum(), solves(file, "missed")[tasks].sum(axis=0)
     if not missed.sum():
         return ""
     named = ", ".join(f"{label} {count}" for label, count in zip(file.guesses, missed) if count)
@@ -70,6 +60,6 @@ def _over_tolerance(file, tasks):
 
 
 def _largest_residual(file, task):
-    residual = file.h5[RESIDUAL][file.first_step[task]:file.first_step[task] + file.steps[task]]
+    residual = file.rows(RESIDUAL, task)
     step = int(np.nanargmax(residual))
     return f"task {task} ({texts.short_text(residual[step], 2)} in step {step})"

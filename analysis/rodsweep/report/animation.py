@@ -10,9 +10,6 @@ import base64
 import math
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from rodsweep.drawing import staging
 from rodsweep.drawing.looks import HELD, RODS
@@ -105,13 +102,8 @@ def _animation(file, task, tasks, room):
 
 def _points(shown):
     """(index of every end's point, number of points); the first ends of all segments come before the second ones."""
-    ends = np.concatenate(shown.ends(0))
-    rod = np.concatenate([shown.rod, shown.rod])
     reach = MEETING * np.median(shown.length[shown.length > 0]) if (shown.length > 0).any() else 1.0
-    pairs = cKDTree(ends).query_pairs(reach, output_type="ndarray")
-    pairs = pairs[rod[pairs[:, 0]] == rod[pairs[:, 1]]] if len(pairs) else np.empty((0, 2), dtype=int)
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(ends), len(ends)))
-    points, joined = connected_components(graph, directed=False)
+    points, joined = trajectory.meeting(np.concatenate(shown.ends(0)), np.tile(shown.rod, 2), reach)
     return joined, points
 
 

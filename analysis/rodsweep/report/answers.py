@@ -11,7 +11,6 @@ import numpy as np
 
 from rodsweep.reading import blocks, texts, timings
 
-FAILURES_SHOWN = 12
 DOT_WIDTH, BAR_WIDTH = 96, 120    # of the drawings in the table, in pixels
 
 
@@ -148,31 +147,3 @@ def _direct(file, block):
     return Row("direct", False, True, {**shown, "cg_us": texts.fixed_text(us["direct_us"], 1)},
                {**sort, "cg_us": us["direct_us"]}, dict(block.direct_speedup),
                {"assemble": us["assemble_us"], "direct": us["direct_us"]})
-
-
-def failures(file, chosen):
-    """(lines of [task, outcome, message], number of further failures)."""
-    failed = np.flatnonzero(chosen & file.complete & ~file.ok)
-    shown = failed[:FAILURES_SHOWN]
-    messages = file.results("message", shown) if len(shown) else None
-    return [(int(task), str(file.outcome[task]), "" if messages is None else str(messages[k]))
-            for k, task in enumerate(shown)], max(0, len(failed) - FAILURES_SHOWN)
-
-
-def runs(file):
-    """One dictionary per start: time, host, ranks, revision."""
-    return [{"begin": run.get("begin", ""), "end": run.get("end", ""), "host": run.get("host", ""),
-             "ranks": int(run.get("ranks", 0)), "revision": run.get("revision", ""),
-             "versions": run.get("versions", ""), "oversubscribed": bool(run.get("oversubscribed", 0))}
-            for run in file.runs()]
-
-
-def steps(found, guesses, labels):
-    """Rows with results of the steps of Blocks: (title, {name: (median, largest)} as texts)."""
-    rows = []
-    for block in found:
-        for g in guesses if block.sims.closed_loop and guesses else [0]:
-            title = f"{block.title}, {labels[g]}" if block.sims.closed_loop else block.title
-            rows.append((title, {name: [texts.short_text(float(of[g]), 2) for of in (estimate.value, largest)]
-                                 for name, (estimate, largest) in block.steps.items()}))
-    return rows

@@ -123,8 +123,5 @@ def _values(measure, sims, index):
 
 def _rounded(numbers, digits=6):
     """Numbers rounded to `digits` digits; None if not finite."""
-    return [_short(float(f"{number:.{digits}g}")) if math.isfinite(number) else None for number in np.ravel(numbers)]
-
-
-def _short(number):
-    return int(number) if number == int(number) else number
+    short = (float(f"{number:.{digits}g}") for number in np.ravel(numbers))
+    return [None if not math.isfinite(number) else int(number) if number == int(number) else number for number in short]

@@ -16,10 +16,7 @@ from rodsweep.reading import blocks, intervals, measures, timings
 DIRECT = "direct"
 SPEEDUPS = {"guess_cg": "speedup of guess and CG", "cg": "speedup of CG alone", "step": "speedup of the whole step"}
 TIMES = {"guess_us": "time of the guess", "cg_us": "time of CG, or of the direct solve"}
-STEPS = {"length_drift": "largest length drift of a simulation", "joint_gap": "largest joint gap, over the length",
-         "newton_residual": "largest Newton residual at the end of a step",
-         "penetration": "deepest penetration, over the radius",
-         "newton_iterations": "Newton iterations of a step"}
+OF_STEPS = ("length_drift", "joint_gap", "newton_residual", "penetration", "newton_iterations")    # in this order
 
 
 @dataclass(frozen=True)
@@ -72,14 +69,14 @@ def of_guesses(file, sims, guesses, tolerances):
 def _ratios(file, sims, guesses, tolerances):
     if file.zero is None:
         return []
-    ratios = {newton: measures.cg_ratios(file, sims, newton) for newton in measures.NEWTON}
+    ratios = {newton: measures.cg_counts(file, sims, newton) for newton in measures.NEWTON}
     chosen = np.ix_(range(len(sims)), guesses, tolerances)
     ratio = Measure("ratio", "CG ratio", "ratio", False,
                     {newton: found.ratio[chosen] for newton, found in ratios.items()}, intervals.mean,
                     "CG iterations with a guess over those from zero, summed over a simulation; mean over simulations. "
                     "Below 1 the guess saves iterations.")
     iterations = Measure("iterations", "CG iterations of a solve", "count", False,
-                         {"": ratios["first"].iterations_per_solve[chosen]}, intervals.mean,
+                         {"": ratios["first"].per_solve[chosen]}, intervals.mean,
                          "First Newton iterations; mean over a simulation, then over simulations.")
     return [iterations] if guesses == [file.zero] else [ratio, iterations]
 
@@ -116,10 +113,10 @@ def _times(file, parts, guesses, with_direct):
 def _steps(file, sims, columns):
     figures = measures.step_figures(file, sims)
     found = []
-    for name, title in STEPS.items():
+    for name in OF_STEPS:
         values = figures[name][:, columns]
         if np.isfinite(values).any():
-            found.append(Measure(name, title, "count" if name == "newton_iterations" else "part",
+            found.append(Measure(name, measures.OF_STEPS[name].chart, "count" if name == "newton_iterations" else "part",
                                  bool(name != "newton_iterations" and np.nanmin(values) > 0), {"": values},
                                  intervals.median, "Median over simulations."))
     return found

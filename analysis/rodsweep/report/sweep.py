@@ -7,10 +7,7 @@ from dataclasses import dataclass, field
 from rodsweep.reading import blocks, commandline, measures, remarks, texts, unconverged
 from rodsweep.report import animation, answers, axes, families, lines
 
-STEP_TITLES = {"newton_iterations": "Newton iterations a step", "newton_residual": "Newton residual",
-               "momentum_residual": "momentum residual", "length_drift": "length drift",
-               "joint_gap": "joint gap / length", "penetration": "penetration / radius",
-               "contact_residual": "contact residual / radius"}
+FAILURES_SHOWN = 12
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +34,7 @@ class Sweep:
     timed_tolerance: str = ""
     answers: list = field(default_factory=list)
     steps: list = field(default_factory=list)
-    step_columns: dict = field(default_factory=dict)
+    step_measures: dict = field(default_factory=dict)
 
     @property
     def unfinished(self):
@@ -60,13 +57,13 @@ def made(file, options, budget, room):
     tolerances = commandline.chosen_tolerances(file, options) or list(range(len(file.tolerances)))
     sims = measures.simulations(file, chosen)
     job = file.job()
-    failures, more = answers.failures(file, chosen)
+    failures, more = measures.failures(file, chosen, FAILURES_SHOWN)
     films, films_left_out = animation.animations(file, chosen, room)
     data = {"families": [], "animations": films, "warning": "", "tolerance": 0,
             "tolerances": [texts.tolerance_label(file.tolerances[t]) for t in tolerances]}
     found = _found(file, options, sims, guesses, tolerances, budget, data) if len(sims) else {}
     return Sweep(name=job.get("name") or os.path.splitext(os.path.basename(file.path))[0], path=file.path, job=job,
-                 census=measures.census(file, chosen), failures=failures, more_failures=more, runs=answers.runs(file),
+                 census=measures.census(file, chosen), failures=failures, more_failures=more, runs=file.runs(),
                  revisions=remarks.revisions(file), data=data, films_left_out=films_left_out,
                  no_ratios="the job has no zero guess to compare with" if file.guesses and file.zero is None
                  else "", **found)
@@ -87,6 +84,4 @@ def _found(file, options, sims, guesses, tolerances, budget, data):
             "tolerance": "" if headline is None else texts.tolerance_label(file.tolerances[headline]),
             "timed_tolerance": remarks.solve_tolerance(file, tasks),
             "answers": answers.answers(file, measured, guesses, headline),
-            "steps": answers.steps(measured, guesses, file.guesses),
-            "step_columns": {name: title for name, title in STEP_TITLES.items()
-                             if any(name in block.steps for block in measured)}}
+            "steps": blocks.step_rows(measured, guesses, file.guesses), "step_measures": blocks.step_measures(measured)}
