@@ -19,7 +19,7 @@ from rodsweep import reading
 from rodsweep.reading.errors import UserError
 
 CLEAR = "\x1b[K"
-STATUS = re.compile(re.escape(CLEAR) + r"\[[#.]+\] ")    # written by runner/terminal/progress_line.cpp
+STATUS = re.compile(re.escape(CLEAR) + r"\[[#.]+\] ")    # written by runner/terminal/progress.cpp
 
 
 class JobError(UserError):
