@@ -21,7 +21,7 @@ class Incomplete : public BlockPreconditioner {
 };
 
 std::vector<int> given_order(const BlockMatrix& pattern) {
-  std::vector<int> order(static_cast<std::size_t>(pattern.block_rows()));
+  std::vector<int> order(at(pattern.block_rows()));
   std::iota(order.begin(), order.end(), 0);
   return order;
 }

@@ -260,12 +260,11 @@ void ConjugateGradient::Impl::copy_entries() {
   const bool symmetric = settings.preconditioner == Preconditioner::icc;
   PetscScalar* out = nullptr;
   petsc_check(symmetric ? MatSeqSBAIJGetArray(entries, &out) : MatSeqBAIJGetArray(entries, &out), "MatSeqBAIJGetArray");
-  PetscScalar* at = out;
+  PetscScalar* next = out;
   for (int row = 0; row < a.block_rows(); ++row)
     for (int k = a.row_begin(row); k < a.row_end(row); ++k) {
       if (symmetric && a.column(k) < row) continue;
-      for (const Lane8& column : a.blocks[static_cast<std::size_t>(k)].column)
-        store6(std::exchange(at, at + 6), column);
+      for (const Lane8& column : a.blocks[at(k)].column) store6(std::exchange(next, next + 6), column);
     }
   petsc_check(symmetric ? MatSeqSBAIJRestoreArray(entries, &out) : MatSeqBAIJRestoreArray(entries, &out),
               "MatSeqBAIJRestoreArray");
@@ -354,7 +353,7 @@ double ConjugateGradient::norm_of(const VectorX& b) {
 void ConjugateGradient::keep_history(bool on) {
   CgSolver::keep_history(on);
   Impl& s = *impl_;
-  s.history_buffer.resize(on ? static_cast<std::size_t>(max_iterations_) + 1 : 0);
+  s.history_buffer.resize(on ? at(max_iterations_) + 1 : 0);
   petsc_check(KSPSetResidualHistory(s.ksp, on ? s.history_buffer.data() : nullptr,
                                     static_cast<PetscInt>(s.history_buffer.size()), PETSC_TRUE),
               "KSPSetResidualHistory");

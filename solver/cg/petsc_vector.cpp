@@ -99,7 +99,7 @@ PetscErrorCode create_vectors(Mat m, Vec* right, Vec* left) noexcept {
 }
 
 PetscErrorCode create(PetscInt size, Vec* out) noexcept {
-  const std::size_t count = static_cast<std::size_t>(size) / 8 + 1;
+  const std::size_t count = at(size) / 8 + 1;
   Lane8* const memory = static_cast<Lane8*>(std::aligned_alloc(alignof(Lane8), count * sizeof(Lane8)));
   if (!memory) return PETSC_ERR_MEM;
   std::fill_n(memory, count, Lane8{});

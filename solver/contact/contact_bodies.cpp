@@ -46,7 +46,7 @@ ContactBodies::ContactBodies(const Scene& scene) {
     const Rod& rod = scene.rods[r];
     const int first = count();
     for (int s = 0; s < rod.segment_count(); ++s) {
-      const Segment& segment = rod.segments[static_cast<std::size_t>(s)];
+      const Segment& segment = rod.segments[at(s)];
       bodies_.push_back({static_cast<int>(r), s, segment.radius_m, segment.length_m / 2, segment.inverse_mass > 0});
     }
     excluded_.resize(bodies_.size());
@@ -60,16 +60,16 @@ ContactBodies::ContactBodies(const Scene& scene) {
 
 void ContactBodies::connect(const Rod& rod, int first_body) {
   const auto place = [&rod](int segment, const Vector3& arm) {  // -1, 0, 1: first end, in between, last end
-    const double quarter = rod.segments[static_cast<std::size_t>(segment)].length_m / 4;
+    const double quarter = rod.segments[at(segment)].length_m / 4;
     return arm.z() > quarter ? 1 : arm.z() < -quarter ? -1 : 0;
   };
   const auto connect = [&](int from, int end, int to, int there) {
     if (end == 0) return;
     for (const int into : {-1, 1})
-      if (there != into) next_[static_cast<std::size_t>(first_body + from)].push_back({end, first_body + to, into});
+      if (there != into) next_[at(first_body + from)].push_back({end, first_body + to, into});
   };
   std::map<int, std::vector<std::pair<int, int>>> at_point;  // segments that end at one without length, and which end
-  const auto is_point = [&rod](int segment) { return rod.segments[static_cast<std::size_t>(segment)].length_m == 0; };
+  const auto is_point = [&rod](int segment) { return rod.segments[at(segment)].length_m == 0; };
   for (const Joint& joint : rod.joints) {
     const int on_a = place(joint.a, joint.arm_a), on_b = place(joint.b, joint.arm_b);
     if (is_point(joint.a)) at_point[joint.a].emplace_back(joint.b, on_b);
@@ -104,7 +104,7 @@ void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
   exclude_near(rod, first_body, ways);
   exclude_overlapping(rod, first_body, ways);
   for (int s = first_body; s < first_body + rod.segment_count(); ++s) {
-    std::vector<int>& excluded = excluded_[static_cast<std::size_t>(s)];
+    std::vector<int>& excluded = excluded_[at(s)];
     std::sort(excluded.begin(), excluded.end());
     excluded.erase(std::unique(excluded.begin(), excluded.end()), excluded.end());
   }
@@ -115,13 +115,13 @@ void ContactBodies::exclude_near(const Rod& rod, int first_body, JointWays& ways
   double widest = 0;
   for (const Segment& segment : rod.segments) widest = std::max(widest, segment.radius_m);
   for (int start = 0; start < rod.segment_count(); ++start) {
-    const double radius = rod.segments[static_cast<std::size_t>(start)].radius_m;
+    const double radius = rod.segments[at(start)].radius_m;
     const auto exclude = [&](int joint, const JointWays::Way& way) {
-      const Joint& through = rod.joints[static_cast<std::size_t>(joint)];
+      const Joint& through = rod.joints[at(joint)];
       for (const int segment : {through.a, through.b}) {
-        const double touching = radius + rod.segments[static_cast<std::size_t>(segment)].radius_m;
+        const double touching = radius + rod.segments[at(segment)].radius_m;
         if (segment > start && way.length_m < half_pi * touching)
-          excluded_[static_cast<std::size_t>(first_body + start)].push_back(first_body + segment);
+          excluded_[at(first_body + start)].push_back(first_body + segment);
       }
     };
     ways.from(
@@ -138,10 +138,8 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Jo
     Vector3 arm_a, arm_b;
     RestPose pose;
   };
-  const auto segment = [&rod](int i) -> const Segment& { return rod.segments[static_cast<std::size_t>(i)]; };
-  const auto joint = [&rod](const Meeting& at) -> const Joint& {
-    return rod.joints[static_cast<std::size_t>(at.joint)];
-  };
+  const auto segment = [&rod](int i) -> const Segment& { return rod.segments[at(i)]; };
+  const auto joint = [&rod](const Meeting& of) -> const Joint& { return rod.joints[at(of.joint)]; };
   const auto beside = [](const Vector3& arm, const Vector3& other, double length) {
     return (arm - other).norm() <= 1e-9 * length;
   };
@@ -155,7 +153,7 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Jo
     if (is_point || apart >= a.radius_m + b.radius_m) return;
     const auto [low, high] = std::minmax(pair.a, pair.b);
     if (!known.insert(static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high)).second) return;
-    excluded_[static_cast<std::size_t>(first_body + low)].push_back(first_body + high);
+    excluded_[at(first_body + low)].push_back(first_body + high);
     open.push_back(pair);
   };
   /// The segment on the other side of a joint of `from`.
@@ -207,7 +205,7 @@ bool ContactBodies::matter(int a, int b) const {
   if (!one.is_free && !other.is_free) return false;
   if (one.radius == 0 || other.radius == 0) return false;
   if (one.rod < 0) return true;
-  const std::vector<int>& excluded = excluded_[static_cast<std::size_t>(a)];
+  const std::vector<int>& excluded = excluded_[at(a)];
   return !std::binary_search(excluded.begin(), excluded.end(), b);
 }
 

@@ -74,14 +74,14 @@ const std::vector<char>& ContactProjection::impacts() {
   finder_.place(scene_, axes_);
   const auto rod_of = [this](int body) { return body < 0 ? -1 : finder_.bodies().body(body).rod; };
   /// Whether this marks another rod.
-  const auto mark = [this](int rod) { return rod >= 0 && !std::exchange(hit_[static_cast<std::size_t>(rod)], 1); };
+  const auto mark = [this](int rod) { return rod >= 0 && !std::exchange(hit_[at(rod)], 1); };
   for (const Contact& contact : contacts_)
     if (contact.impulse.isZero(0) && finder_.closes(contact, axes_)) mark(rod_of(contact.a)), mark(rod_of(contact.b));
   for (bool again = true; again;) {
     again = false;
     for (const Contact& contact : contacts_) {
       const int a = rod_of(contact.a), b = rod_of(contact.b);
-      if (a < 0 || b < 0 || hit_[static_cast<std::size_t>(a)] == hit_[static_cast<std::size_t>(b)]) continue;
+      if (a < 0 || b < 0 || hit_[at(a)] == hit_[at(b)]) continue;
       again |= mark(a) | mark(b);
     }
   }
@@ -123,23 +123,23 @@ void ContactProjection::linearise() {
   finder_.place(scene_, axes_);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Contact& contact = contacts_[c];
-    Linear& at = linear_[c];
+    Linear& linear = linear_[c];
     const bool is_set = contact.impact.happens && !fresh_;
     Contact followed = contact;
     const Gap gap = finder_.follow(followed, axes_);
-    at.width = gap.width;
+    linear.width = gap.width;
     if (!is_set) {
       contact.normal = followed.normal;
-      at.a = {contact.a, gap.on_a - axes_[static_cast<std::size_t>(contact.a)].centre};
-      at.b = {contact.b, contact.b < 0 ? gap.on_b : gap.on_b - axes_[static_cast<std::size_t>(contact.b)].centre};
+      linear.a = {contact.a, gap.on_a - axes_[at(contact.a)].centre};
+      linear.b = {contact.b, contact.b < 0 ? gap.on_b : gap.on_b - axes_[at(contact.b)].centre};
     }
-    at.size = finder_.bodies().smaller_radius(contact.a, contact.b);
-    at.is_active = false;
+    linear.size = finder_.bodies().smaller_radius(contact.a, contact.b);
+    linear.is_active = false;
     if (contact.impact.happens && fresh_) {
       contact.impact.meeting = -contact.normal.dot(slip(c));
       contact.impact.limit = HUGE_VAL;
     }
-    at.gap = contact.impact.happens ? separation_short_of_rebound(c) : gap.width - contact.allowed;
+    linear.gap = contact.impact.happens ? separation_short_of_rebound(c) : gap.width - contact.allowed;
   }
 }
 
@@ -285,7 +285,7 @@ void ContactProjection::couple() {
     for (std::size_t j = i; j < by_group_.size() && point(by_group_[j]).group == by.group; ++j) {
       const Point& of = point(by_group_[j]);
       const Matrix3 motion =
-          active_[of.active].frame.transpose() * motion_.coupling(*of.at, *by.at) * active_[by.active].frame;
+          active_[of.active].frame.transpose() * motion_.coupling(*of.place, *by.place) * active_[by.active].frame;
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) g[by.entry(of, r, c)] = g[of.entry(by, c, r)] = motion(r, c);
     }
@@ -381,7 +381,7 @@ void ContactProjection::find_motions() {
   double* const motions = reinterpret_cast<double*>(motions_.data());
   for (const Point& point : points_)
     Eigen::Map<Vector3>(motions + point.begin + point.motion) =
-        active_[point.active].frame.transpose() * motion_.of(*point.at);
+        active_[point.active].frame.transpose() * motion_.of(*point.place);
 }
 
 void ContactProjection::restart(double moved) {
@@ -416,7 +416,7 @@ void ContactProjection::tell_impulses() {
   const auto tell = [this](int body, const Vector3& arm, const Vector3& impulse) {
     const Body& of = finder_.bodies().body(body);
     if (!of.is_free) return;
-    Vector6& on = scene_.rods[static_cast<std::size_t>(of.rod)].contact_impulse[static_cast<std::size_t>(of.segment)];
+    Vector6& on = scene_.rods[at(of.rod)].contact_impulse[at(of.segment)];
     const double share = motion_.share(of.rod);
     on.head<3>() += share * impulse;
     const Vector3 moment = share * arm.cross(impulse);

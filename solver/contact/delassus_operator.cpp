@@ -16,19 +16,19 @@ Block6 transposed(const Block6& block) {
 }  // namespace
 
 void DelassusOperator::clear() {
-  for (const int segment : touched_) place_[static_cast<std::size_t>(segment)] = -1;
+  for (const int segment : touched_) place_[at(segment)] = -1;
   touched_.clear();
   known_ = 0;
   is_full_ = false;
 }
 
 void DelassusOperator::touch(int segment) {
-  if (place_[static_cast<std::size_t>(segment)] >= 0) return;
+  if (place_[at(segment)] >= 0) return;
   if (touched_.size() == most_touched_) {
     is_full_ = true;
     return;
   }
-  place_[static_cast<std::size_t>(segment)] = static_cast<int>(touched_.size());
+  place_[at(segment)] = static_cast<int>(touched_.size());
   touched_.push_back(segment);
 }
 

@@ -13,8 +13,7 @@ namespace rodsweep {
 
 class DelassusOperator {
  public:
-  DelassusOperator(int segments, int most_touched)
-      : most_touched_(static_cast<std::size_t>(most_touched)), place_(static_cast<std::size_t>(segments), -1) {}
+  DelassusOperator(int segments, int most_touched) : most_touched_(at(most_touched)), place_(at(segments), -1) {}
 
   /// Forgets all segments: the response was assembled anew.
   void clear();
@@ -31,7 +30,7 @@ class DelassusOperator {
   const Block6& block(int of, int by) const { return blocks_[place(by) * stride_ + place(of)]; }
 
  private:
-  std::size_t place(int segment) const { return static_cast<std::size_t>(place_[static_cast<std::size_t>(segment)]); }
+  std::size_t place(int segment) const { return at(place_[at(segment)]); }
   void grow();
 
   std::size_t most_touched_;

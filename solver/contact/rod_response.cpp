@@ -48,9 +48,9 @@ RodResponse::RodResponse(const Rod& rod)
       orientation_(rod.segments.size()),
       turns_(rod.segments.size()) {
   for (int k = 0; k < rod.joint_count(); ++k) {
-    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
-    sides_[static_cast<std::size_t>(joint.a)].push_back({k, false});
-    sides_[static_cast<std::size_t>(joint.b)].push_back({k, true});
+    const Joint& joint = rod.joints[at(k)];
+    sides_[at(joint.a)].push_back({k, false});
+    sides_[at(joint.b)].push_back({k, true});
   }
 }
 
@@ -75,7 +75,7 @@ bool RodResponse::is_stale(const Rod& rod) const {
 }
 
 Lane8 RodResponse::free_motion(const Rod& rod, int segment, const Lane8& wrench) const {
-  const auto s = static_cast<std::size_t>(segment);
+  const auto s = at(segment);
   return turned(turns_[s].to_world, motion(rod.segments[s], turned(turns_[s].to_own, wrench)));
 }
 
@@ -84,8 +84,7 @@ void RodResponse::respond(const Rod& rod, Lane8* motion) {
   for (std::size_t s = 0; s < own_.size(); ++s) own_[s] = turned(turns_[s].to_own, motion[s]);
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Joint& joint = rod.joints[k];
-    store6(change_.data() + 6 * k, constraint_change(linearization.joints[k], own_[static_cast<std::size_t>(joint.a)],
-                                                     own_[static_cast<std::size_t>(joint.b)]));
+    store6(change_.data() + 6 * k, constraint_change(linearization.joints[k], own_[at(joint.a)], own_[at(joint.b)]));
   }
   factor_.substitute(change_);
   multipliers_ -= change_;
@@ -95,7 +94,7 @@ void RodResponse::respond(const Rod& rod, Lane8* motion) {
 
 void RodResponse::load(const Rod& rod, int segment) {
   loaded_ = segment;
-  const auto s = static_cast<std::size_t>(segment);
+  const auto s = at(segment);
   const Matrix3 turn = orientation_[s].toRotationMatrix();
   if (CondensedFactor* factor = factor_.condensed_factor()) {
     Lane8 force[6]{};  // R^T
@@ -110,16 +109,15 @@ void RodResponse::load(const Rod& rod, int segment) {
     for (int r = 0; r < 6; ++r) free(r, c) = column[r];
   }
   for (const Side& side : sides_[s]) {
-    const Eigen::Matrix<double, 6, 6> block =
-        dense({system_.linearization().joints[static_cast<std::size_t>(side.joint)], side.is_b}) * free;
+    const Eigen::Matrix<double, 6, 6> block = dense({system_.linearization().joints[at(side.joint)], side.is_b}) * free;
     for (int r = 0; r < 6; ++r)
-      for (int c = 0; c < 6; ++c) columns_[static_cast<std::size_t>(6 * side.joint + r)][c] += block(r, c);
+      for (int c = 0; c < 6; ++c) columns_[at(6 * side.joint + r)][c] += block(r, c);
   }
   factor_.whole_factor()->substitute(columns_);
 }
 
 Block6 RodResponse::compliance(const Rod& rod, int of) {
-  const auto s = static_cast<std::size_t>(of);
+  const auto s = at(of);
   const Segment& segment = rod.segments[s];
   const Matrix3 turn = orientation_[s].toRotationMatrix();
   Lane8 row[6]{};  // of H R^T
@@ -127,7 +125,7 @@ Block6 RodResponse::compliance(const Rod& rod, int of) {
     factor->motion_of(of, row);
   } else {
     for (const Side& side : sides_[s]) {
-      const JointSide jacobian(system_.linearization().joints[static_cast<std::size_t>(side.joint)], side.is_b);
+      const JointSide jacobian(system_.linearization().joints[at(side.joint)], side.is_b);
       const Lane8* const x = columns_.data() + 6 * static_cast<std::ptrdiff_t>(side.joint);
       for (int j = 0; j < 3; ++j) {
         for (int r = 0; r < 3; ++r) row[j] -= entry(jacobian.shift[j], r) * x[r];

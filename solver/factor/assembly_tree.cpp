@@ -148,7 +148,7 @@ AssemblyTree::AssemblyTree(const EliminationTree& tree) {
     children.insert(children.end(), children_of[at(s)].begin(), children_of[at(s)].end());
     node.child_end = static_cast<int>(children.size());
     node.stack = depth[at(s)] % 2;
-    const auto stack = static_cast<std::size_t>(node.stack);
+    const auto stack = at(node.stack);
     node.update = top[stack];
     top[stack] += node.update_size();
     stack_size[stack] = std::max(stack_size[stack], top[stack]);

@@ -23,7 +23,7 @@ ExtrapolationGuess::ExtrapolationGuess(const Scene& scene, int newton_iterations
   for (const Rod& rod : scene.rods)
     for (int j = 0; j < newton_iterations; ++j) {
       History h;
-      h.solutions.assign(static_cast<std::size_t>(terms), VectorX::Zero(6 * rod.joint_count()));
+      h.solutions.assign(at(terms), VectorX::Zero(6 * rod.joint_count()));
       histories_.push_back(std::move(h));
     }
 }
@@ -35,9 +35,7 @@ ExtrapolationGuess::History& ExtrapolationGuess::history(const SolvePosition& at
 Proposal ExtrapolationGuess::propose(const LinearSystem&, const SolvePosition& at, VectorX& x0) {
   const History& h = history(at);
   const int known = h.last_step == at.step - 1 ? std::min(h.consecutive, terms_) : 0;
-  const auto back = [&](int steps) -> const VectorX& {
-    return h.solutions[static_cast<std::size_t>((h.newest - steps + terms_) % terms_)];
-  };
+  const auto back = [&](int steps) -> const VectorX& { return h.solutions[at((h.newest - steps + terms_) % terms_)]; };
   switch (known) {
     case 0: x0.setZero(); break;
     case 1: x0 = back(0); break;
@@ -52,12 +50,12 @@ void ExtrapolationGuess::accept(const LinearSystem&, const SolvePosition& at, co
   h.consecutive = h.last_step == at.step - 1 ? std::min(h.consecutive + 1, terms_) : 1;
   h.last_step = at.step;
   h.newest = (h.newest + 1) % terms_;
-  h.solutions[static_cast<std::size_t>(h.newest)] = solution;
+  h.solutions[at(h.newest)] = solution;
 }
 
 void ExtrapolationGuess::accept_total(int rod, int step, const VectorX& total) {
   History& h = history({step, 0, rod});
-  if (h.last_step == step) h.solutions[static_cast<std::size_t>(h.newest)] = total;
+  if (h.last_step == step) h.solutions[at(h.newest)] = total;
 }
 
 OracleGuess::OracleGuess(const Scene& scene, double error, Error kind, std::uint64_t seed)

@@ -27,7 +27,7 @@ class NormalEquations {
   double coefficient(int row) const { return reinterpret_cast<const double*>(coefficients_.data())[row]; }
 
  private:
-  Lane8* column(std::vector<Lane8>& of, int index) { return of.data() + static_cast<std::size_t>(index) * width_; }
+  Lane8* column(std::vector<Lane8>& of, int index) { return of.data() + at(index) * width_; }
   double* entries(std::vector<Lane8>& of, int index) { return reinterpret_cast<double*>(column(of, index)); }
 
   std::size_t width_;  ///< lanes of a column

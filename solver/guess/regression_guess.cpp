@@ -14,7 +14,7 @@ RegressionGuess::RegressionGuess(const Scene& scene, int newton_iterations, int 
     none.right_sides = none.solutions = empty;
     none.gram = Matrix::Zero(size, size);
     none.products = VectorX::Zero(size);
-    histories_.insert(histories_.end(), static_cast<std::size_t>(newton_iterations), none);
+    histories_.insert(histories_.end(), at(newton_iterations), none);
   }
 }
 

@@ -24,7 +24,7 @@ RitzGuess::RitzGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, in
       mass_(size + collected, size + collected),
       combinations_(size + collected, size + collected),
       eigen_(size + collected),
-      dropped_(static_cast<std::size_t>(size + collected)),
+      dropped_(at(size + collected)),
       coefficients_(VectorX::Zero(size + collected)) {
   std::iota(order_.begin(), order_.end(), 0);
   for (const Rod& rod : scene.rods) {
@@ -33,7 +33,7 @@ RitzGuess::RitzGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, in
     const Basis basis{StoredVectors(n, size + collected), Eigen::MatrixXd::Zero(n, size + collected), {}};
     spaces_.push_back(
         {none, none, 0, basis, basis, false, Eigen::MatrixXd::Zero(n, size), VectorX::Zero(n), VectorX::Zero(n), 0});
-    for (Basis* of : {&spaces_.back().begun, &spaces_.back().basis}) of->values.reserve(static_cast<std::size_t>(size));
+    for (Basis* of : {&spaces_.back().begun, &spaces_.back().basis}) of->values.reserve(at(size));
   }
 }
 
@@ -109,7 +109,7 @@ bool RitzGuess::rayleigh_ritz(Space& space, const BlockMatrix& a) {
   // Dropped combinations are zero. Their eigenvalue is the largest, so that they come last.
   const double largest = 2 * gram_.trace();
   for (int i = 0; i < gram_.rows(); ++i)
-    if (dropped_[static_cast<std::size_t>(i)]) gram_(i, i) = largest;
+    if (dropped_[at(i)]) gram_(i, i) = largest;
   eigen_.compute(gram_);
   mass_.noalias() = combinations_.lazyProduct(eigen_.eigenvectors());
   const int spanned = static_cast<int>(std::count(dropped_.begin(), dropped_.end(), false));
@@ -140,7 +140,7 @@ bool RitzGuess::orthonormalise(Space& space) {
   eigen_.compute(mass_);
   for (int i = 0; i < most; ++i) {
     const double value = eigen_.eigenvalues()[i];
-    dropped_[static_cast<std::size_t>(i)] = value < smallest_mass;
+    dropped_[at(i)] = value < smallest_mass;
     const double scale = value < smallest_mass ? 0 : 1 / std::sqrt(value);
     combinations_.col(i) = scale * coefficients_.cwiseProduct(eigen_.eigenvectors().col(i));
   }

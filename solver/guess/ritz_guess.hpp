@@ -36,7 +36,7 @@ class RitzGuess : public InitialGuess, private Deflation {
   Deflation* deflation() override { return this; }
 
   /// theta of a rod's Ritz vectors, ascending.
-  const std::vector<double>& ritz_values(int rod) const { return spaces_[static_cast<std::size_t>(rod)].begun.values; }
+  const std::vector<double>& ritz_values(int rod) const { return spaces_[at(rod)].begun.values; }
 
  private:
   /// V begins with `size` Ritz vectors; unused ones are zero.

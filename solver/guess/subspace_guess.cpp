@@ -12,7 +12,7 @@ SubspaceGuess::SubspaceGuess(const Scene& scene, int newton_iterations, int size
       projection_(size) {
   for (const Rod& rod : scene.rods) {
     const StoredVectors none(6 * rod.joint_count(), size);
-    histories_.insert(histories_.end(), static_cast<std::size_t>(newton_iterations), History{none});
+    histories_.insert(histories_.end(), at(newton_iterations), History{none});
     if (use == Use::guess_and_deflation) products_.push_back(none);
   }
 }

@@ -17,7 +17,7 @@ std::vector<Vector3> hexagonal_places(int count) {
         places.push_back(ring * Vector3(std::cos(at), 0, std::sin(at)) +
                          i * Vector3(std::cos(along), 0, std::sin(along)));
       }
-  places.resize(static_cast<std::size_t>(count));
+  places.resize(at(count));
   return places;
 }
 

@@ -22,7 +22,7 @@ struct AxisPoint {
 };
 
 const Segment& segment(const Scene& scene, const AxisPoint& place) {
-  return scene.rods[static_cast<std::size_t>(place.rod)].segments[static_cast<std::size_t>(place.segment)];
+  return scene.rods[at(place.rod)].segments[at(place.segment)];
 }
 
 /// Finds the segments at points of a scene.
@@ -160,16 +160,15 @@ void add(const std::vector<PrescribedMotion>& motions, const SegmentFinder& plac
     }
   std::map<int, std::vector<ClampPath>> paths;  // of each rod
   for (auto& [place, own] : moved) {
-    const Rod& rod = scene.rods[static_cast<std::size_t>(place.first)];
-    const auto s = static_cast<std::size_t>(place.second);
+    const Rod& rod = scene.rods[at(place.first)];
+    const auto s = at(place.second);
     own.about = centre_of_turns(own.motions, places.rounding_m());
     own.position = rod.position[s];
     own.orientation = rod.orientation[s];
     scene.clamps.push_back({place.first, place.second, own});
     paths[place.first].push_back({place.second, own, [own = own](double time_s) { return own.turned_deg(time_s); }});
   }
-  for (const auto& [rod, own] : paths)
-    check_reach(scene.rods[static_cast<std::size_t>(rod)], own, times_of(motions), stretches);
+  for (const auto& [rod, own] : paths) check_reach(scene.rods[at(rod)], own, times_of(motions), stretches);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ void check_reach(const Rod& rod, const std::vector<ClampPath>& paths, const std:
   std::map<int, const ClampPath*> path_of;
   for (const ClampPath& path : paths) path_of[path.segment] = &path;
   const auto pose = [&](int segment, double time_s) {
-    const auto s = static_cast<std::size_t>(segment);
+    const auto s = at(segment);
     const auto path = path_of.find(segment);
     return path == path_of.end() ? Pose{rod.position[s], rod.orientation[s]} : path->second->pose(time_s);
   };
@@ -31,8 +31,7 @@ void check_reach(const Rod& rod, const std::vector<ClampPath>& paths, const std:
   };
   const auto check = [&](const Joint& first, int a, const Joint& last, int b, const JointWays::Way& way) {
     const auto clamps = [&] {
-      return "motions of the clamps at " + text_of(rod.position[static_cast<std::size_t>(a)]) + " and " +
-             text_of(rod.position[static_cast<std::size_t>(b)]);
+      return "motions of the clamps at " + text_of(rod.position[at(a)]) + " and " + text_of(rod.position[at(b)]);
     };
     for (const double time_s : times_s) {
       const Pose one = pose(a, time_s), other = pose(b, time_s);
@@ -49,8 +48,8 @@ void check_reach(const Rod& rod, const std::vector<ClampPath>& paths, const std:
                          " joints between them: use more segments");
     }
   };
-  const auto joint = [&rod](int k) -> const Joint& { return rod.joints[static_cast<std::size_t>(k)]; };
-  const auto is_static = [&rod](int segment) { return rod.segments[static_cast<std::size_t>(segment)].is_static; };
+  const auto joint = [&rod](int k) -> const Joint& { return rod.joints[at(k)]; };
+  const auto is_static = [&rod](int segment) { return rod.segments[at(segment)].is_static; };
   for (const ClampPath& path : paths)
     for (const JointWays::Meeting& first : ways.joints_of(path.segment))
       ways.from(

@@ -47,8 +47,7 @@ void Ring::build(Scene& scene) const {
   for (int i = 0; i < segments; ++i) {
     const int next = (i + 1) % segments;
     JointSpec joint = joint_between(rod, i, next, *this, force);
-    const Quaternion circular =
-        rod[static_cast<std::size_t>(i)].orientation.conjugate() * rod[static_cast<std::size_t>(next)].orientation;
+    const Quaternion circular = rod[at(i)].orientation.conjugate() * rod[at(next)].orientation;
     const bool straight = rest_shape == Ring::RestShape::straight;
     joint.rest = (about_rod(i * twist) * (straight ? Quaternion::Identity() : circular) * about_rod(-(i + 1) * twist))
                      .normalized();

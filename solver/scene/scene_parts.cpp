@@ -91,8 +91,8 @@ void set_height(SegmentSpec& segment, const Vector3& height) {
 
 JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p,
                         double force_n) {
-  const double length_a = segments[static_cast<std::size_t>(a)].length_m;
-  const double length_b = segments[static_cast<std::size_t>(b)].length_m;
+  const double length_a = segments[at(a)].length_m;
+  const double length_b = segments[at(b)].length_m;
   const double length = (length_a + length_b) / 2;
   const Section section = stiffness(p);
   JointSpec joint;
@@ -142,7 +142,7 @@ std::string text_of(const Vector3& point) {
 
 void move_clamp(Scene& scene, int segment, const Vector3& velocity_m_s) {
   const Rod& rod = scene.rods.front();
-  const auto s = static_cast<std::size_t>(segment);
+  const auto s = at(segment);
   scene.clamps.push_back({0, segment, [from = rod.position[s], turned = rod.orientation[s], velocity_m_s](double t) {
                             return Pose{from + t * velocity_m_s, turned};
                           }});

@@ -5,11 +5,11 @@
 namespace rodsweep {
 
 ForcingTerms::ForcingTerms(int rods, double first, double newton_tolerance)
-    : first_(first), newton_tolerance_(newton_tolerance), last_(static_cast<std::size_t>(rods)) {}
+    : first_(first), newton_tolerance_(newton_tolerance), last_(at(rods)) {}
 
 double ForcingTerms::next(int rod, int newton, double norm, double residual) {
   constexpr double gamma = 0.9, heeded = 0.1;
-  Last& last = last_[static_cast<std::size_t>(rod)];
+  Last& last = last_[at(rod)];
   double eta = first_;
   if (newton > 0 && last.norm > 0) {
     const double fallen = norm / last.norm, before = gamma * last.eta * last.eta;

@@ -9,7 +9,7 @@ FreeFlight::FreeFlight(const Rod& rod, Integrator integrator, double dt) : integ
   for (int first = 0; first < count; first += lane_width) {
     Group group{};
     for (int lane = 0; lane < lane_width; ++lane) {
-      const Segment& segment = rod.segments[static_cast<std::size_t>(std::min(first + lane, count - 1))];
+      const Segment& segment = rod.segments[at(std::min(first + lane, count - 1))];
       group.is_free[lane] = segment.is_static ? 0 : -1;
       group.inverse_mass[lane] = segment.inverse_mass;
       group.inverse_inertia_transverse[lane] = segment.inverse_inertia_transverse;

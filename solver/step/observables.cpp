@@ -12,11 +12,11 @@ namespace {
 
 /// The joint's shared point from its segment a (or b).
 Vector3 point_on_a(const Rod& rod, const Joint& j) {
-  const std::size_t a = static_cast<std::size_t>(j.a);
+  const std::size_t a = at(j.a);
   return rod.position[a] + rod.orientation[a] * j.arm_a;
 }
 Vector3 point_on_b(const Rod& rod, const Joint& j) {
-  const std::size_t b = static_cast<std::size_t>(j.b);
+  const std::size_t b = at(j.b);
   return rod.position[b] + rod.orientation[b] * j.arm_b;
 }
 
@@ -57,7 +57,7 @@ double rod_length(const Rod& rod) {
     head[s] = rod.position[s] + half;
   }
   const auto move_end = [&](int segment, const Vector3& arm, const Vector3& to) {
-    const std::size_t s = static_cast<std::size_t>(segment);
+    const std::size_t s = at(segment);
     if (std::abs(arm.z()) < rod.segments[s].length_m / 4) return;  // nearer to the centre than to an end
     (arm.z() < 0 ? tail[s] : head[s]) = to;
   };

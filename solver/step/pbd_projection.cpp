@@ -12,7 +12,7 @@ void turn(Rod& rod, std::size_t segment, const Vector3& theta) {
 
 /// Returns |C_s| before the correction.
 double correct_stretch_shear(Rod& rod, const Joint& joint, double stiffness) {
-  const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+  const std::size_t a = at(joint.a), b = at(joint.b);
   const Segment &segment_a = rod.segments[a], &segment_b = rod.segments[b];
   const Vector3 rho_a = rod.orientation[a] * joint.arm_a, rho_b = rod.orientation[b] * joint.arm_b;
   const Vector3 gap = rod.position[a] + rho_a - rod.position[b] - rho_b;
@@ -29,7 +29,7 @@ double correct_stretch_shear(Rod& rod, const Joint& joint, double stiffness) {
 
 /// Returns C_b before the correction.
 Vector3 correct_bend_twist(Rod& rod, const Joint& joint, double stiffness) {
-  const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+  const std::size_t a = at(joint.a), b = at(joint.b);
   const auto [e, frame] = turn_from_rest(rod, joint);
   const Vector3 bend = 2 * e.vec();
   const double turn_a = rod.segments[a].inverse_inertia_transverse, turn_b = rod.segments[b].inverse_inertia_transverse;
@@ -44,7 +44,7 @@ Vector3 correct_bend_twist(Rod& rod, const Joint& joint, double stiffness) {
 GaussSeidelProjection::Iteration PbdProjection::iterate(Rod& rod, const std::vector<int>& order, double) const {
   Iteration iteration;
   for (const int joint_index : order) {
-    const Joint& joint = rod.joints[static_cast<std::size_t>(joint_index)];
+    const Joint& joint = rod.joints[at(joint_index)];
     Vector6 met;
     met.head<3>() = Vector3(correct_stretch_shear(rod, joint, stiffness_.stretch), 0, 0);
     met.tail<3>() = correct_bend_twist(rod, joint, stiffness_.bending);

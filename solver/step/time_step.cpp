@@ -18,14 +18,14 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
     : scene_(scene), settings_(settings), start_time_s_(scene.time_s) {
   const auto check = [&scene](const char* what, int rod, int segment) {
     if (rod < 0 || rod >= static_cast<int>(scene.rods.size()) || segment < 0 ||
-        segment >= scene.rods[static_cast<std::size_t>(rod)].segment_count())
+        segment >= scene.rods[at(rod)].segment_count())
       throw SceneError(std::string(what) + " refers to segment " + std::to_string(segment) + " of rod " +
                        std::to_string(rod) + ", which the scene does not have");
   };
   for (const PointLoad& load : scene.loads) check("a point load", load.rod, load.segment);
   for (const MovingClamp& clamp : scene.clamps) {
     check("a moving clamp", clamp.rod, clamp.segment);
-    if (!scene.rods[static_cast<std::size_t>(clamp.rod)].segments[static_cast<std::size_t>(clamp.segment)].is_static)
+    if (!scene.rods[at(clamp.rod)].segments[at(clamp.segment)].is_static)
       throw SceneError("a moving clamp needs a static segment; segment " + std::to_string(clamp.segment) + " is free");
   }
   for (const Rod& rod : scene.rods) {
@@ -35,7 +35,7 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
   }
   torques_nm_.resize(scene.loads.size());
   for (const PointLoad& load : scene.loads) {
-    Rod& rod = scene.rods[static_cast<std::size_t>(load.rod)];
+    Rod& rod = scene.rods[at(load.rod)];
     rod.load_torque_nm.assign(rod.segments.size(), Vector3::Zero());
   }
   if (scene.contact)
@@ -167,11 +167,10 @@ void TimeStepper::find_loads() {
                                                    rod.velocity[s], time_s, settings_.dt);
     }
   if (!scene_.wind)
-    for (const PointLoad& load : scene_.loads)
-      loads_[static_cast<std::size_t>(load.rod)].force_n[static_cast<std::size_t>(load.segment)].setZero();
+    for (const PointLoad& load : scene_.loads) loads_[at(load.rod)].force_n[at(load.segment)].setZero();
   for (std::size_t i = 0; i < scene_.loads.size(); ++i) {
     const PointLoad& load = scene_.loads[i];
-    const auto r = static_cast<std::size_t>(load.rod), s = static_cast<std::size_t>(load.segment);
+    const auto r = at(load.rod), s = at(load.segment);
     const double factor = load.schedule.at(end_of_step());
     const Vector3 force_n = factor * load.force_n;
     loads_[r].force_n[s] += force_n;
@@ -182,14 +181,14 @@ void TimeStepper::find_loads() {
 // Without joints p* is the result, so it must have the torques.
 void TimeStepper::predict(bool balanced) {
   const auto torque = [this](const PointLoad& load, bool in_balance) -> Vector3& {
-    const auto r = static_cast<std::size_t>(load.rod), s = static_cast<std::size_t>(load.segment);
+    const auto r = at(load.rod), s = at(load.segment);
     return in_balance ? scene_.rods[r].load_torque_nm[s] : loads_[r].torque_nm[s];
   };
   for (const PointLoad& load : scene_.loads)
     for (const bool in_balance : {false, true}) torque(load, in_balance).setZero();
   for (std::size_t i = 0; i < scene_.loads.size(); ++i) {
     const PointLoad& load = scene_.loads[i];
-    torque(load, balanced && !scene_.rods[static_cast<std::size_t>(load.rod)].joints.empty()) += torques_nm_[i];
+    torque(load, balanced && !scene_.rods[at(load.rod)].joints.empty()) += torques_nm_[i];
   }
   const bool loaded = scene_.wind || !scene_.loads.empty();
   const Vector3 gravity = scene_.gravity_at(end_of_step());
@@ -197,10 +196,10 @@ void TimeStepper::predict(bool balanced) {
     flights_[r].predict(scene_.rods[r], scene_.damping_per_s, gravity, loaded ? &loads_[r] : nullptr);
   const double end = end_of_step();
   for (const MovingClamp& clamp : scene_.clamps) {
-    Rod& rod = scene_.rods[static_cast<std::size_t>(clamp.rod)];
+    Rod& rod = scene_.rods[at(clamp.rod)];
     const Pose pose = clamp.pose(end);
-    rod.position[static_cast<std::size_t>(clamp.segment)] = pose.position;
-    rod.orientation[static_cast<std::size_t>(clamp.segment)] = pose.orientation.normalized();
+    rod.position[at(clamp.segment)] = pose.position;
+    rod.orientation[at(clamp.segment)] = pose.orientation.normalized();
   }
   for (Rod& rod : scene_.rods) {
     rod.free_position = rod.position;

@@ -9,8 +9,8 @@ GaussSeidelProjection::Iteration XpbdProjection::iterate(Rod& rod, const std::ve
   const double inverse_dt2 = 1 / (dt * dt);
   Iteration iteration;
   for (const int joint_index : order) {
-    const Joint& joint = rod.joints[static_cast<std::size_t>(joint_index)];
-    const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+    const Joint& joint = rod.joints[at(joint_index)];
+    const std::size_t a = at(joint.a), b = at(joint.b);
     JointJacobian jacobian;
     Vector6 residual;
     linearize(rod, joint, jacobian, residual.data());
