@@ -11,7 +11,7 @@
 #include "solver/guess/ritz_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
-#include "solver/plugin/plugin_guess.hpp"
+#include "solver/plugin/plugin.hpp"
 
 namespace rodsweep {
 namespace {

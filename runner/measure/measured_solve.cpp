@@ -17,7 +17,7 @@
 #include "solver/cg/cg_solver.hpp"
 #include "solver/linear/rounding_level.hpp"
 #include "solver/numbers/narrow.hpp"
-#include "solver/plugin/plugin_preconditioner.hpp"
+#include "solver/plugin/plugin.hpp"
 #include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {

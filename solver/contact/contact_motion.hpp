@@ -2,7 +2,7 @@
 //
 // While contacts are only measured (measure()), a push moves a segment at once, as if it were free. While rods respond
 // (respond()), pushes move them at the next settle(), with the response of their joints (rod_response.hpp). Meanwhile
-// coupling() tells how segments move by impulses on others: in rods with a Delassus operator (delassus_operator.hpp) as
+// coupling() tells how segments move by impulses on others: in rods with a Delassus operator (rod_response.hpp) as
 // they will, in others as if they were free. At the end every segment moves once, by dx and dtheta, and
 // lambda += dlambda. Obstacles and static segments do not move.
 //
@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "solver/contact/contact_bodies.hpp"
-#include "solver/contact/delassus_operator.hpp"
+#include "solver/contact/rod_response.hpp"
 
 namespace rodsweep {
 

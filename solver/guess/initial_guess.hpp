@@ -12,8 +12,8 @@
 #include <memory>
 #include <vector>
 
+#include "solver/cg/cg_solver.hpp"
 #include "solver/cg/conjugate_gradient.hpp"
-#include "solver/cg/deflation.hpp"
 #include "solver/factor/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/step/projection.hpp"

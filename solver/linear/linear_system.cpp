@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "solver/linear/interruption.hpp"
-#include "solver/numbers/lane_vectors.hpp"
+#include "solver/numbers/lanes.hpp"
 #include "solver/rod/joint_kernels.hpp"
 
 namespace rodsweep {

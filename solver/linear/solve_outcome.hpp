@@ -16,6 +16,17 @@ enum class SolveOutcome : std::int8_t {
   not_a_number = 6,     ///< a NaN or infinity appeared
 };
 
-const char* to_string(SolveOutcome outcome);
+inline const char* to_string(SolveOutcome outcome) {
+  switch (outcome) {
+    case SolveOutcome::not_run: return "not_run";
+    case SolveOutcome::converged: return "converged";
+    case SolveOutcome::zero_rhs: return "zero_rhs";
+    case SolveOutcome::iteration_limit: return "iteration_limit";
+    case SolveOutcome::diverged: return "diverged";
+    case SolveOutcome::indefinite: return "indefinite";
+    case SolveOutcome::not_a_number: return "not_a_number";
+  }
+  return "unknown";
+}
 
 }  // namespace rodsweep

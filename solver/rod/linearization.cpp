@@ -4,7 +4,7 @@
 #include <array>
 
 #include "solver/numbers/lane_records.hpp"
-#include "solver/numbers/lane_vectors.hpp"
+#include "solver/numbers/lanes.hpp"
 
 namespace rodsweep {
 namespace {
