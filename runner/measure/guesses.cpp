@@ -7,10 +7,15 @@
 #include "runner/measure/models.hpp"
 #include "runner/measure/plugin_sources.hpp"
 #include "runner/measure/training_sets.hpp"
+#include "solver/guess/extrapolation_guess.hpp"
+#include "solver/guess/guarded_guess.hpp"
+#include "solver/guess/oracle_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/ritz_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
+#include "solver/guess/wrapped_guess.hpp"
+#include "solver/guess/zero_guess.hpp"
 #include "solver/plugin/plugin.hpp"
 
 namespace rodsweep {

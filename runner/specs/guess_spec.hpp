@@ -11,7 +11,7 @@
 
 #include "network/guess/knn.hpp"
 #include "runner/specs/plugin_file.hpp"
-#include "solver/guess/initial_guess.hpp"
+#include "solver/guess/oracle_guess.hpp"
 
 namespace rodsweep {
 

@@ -4,6 +4,7 @@
 
 #include "runner/plan/plan.hpp"
 #include "solver/cg/conjugate_gradient.hpp"
+#include "solver/guess/zero_guess.hpp"
 #include "solver/linear/rounding_level.hpp"
 
 namespace rodsweep {

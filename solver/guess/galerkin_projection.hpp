@@ -31,10 +31,6 @@ class GalerkinProjection : public Deflation {
   void complete(double* z) override;
 
  private:
-  void fill(NormalEquations& equations);
-  /// c <- E^-1 c
-  void solve(NormalEquations& equations, VectorX& c);
-
   Eigen::VectorXi order_;
   int known_ = 0;
   Eigen::MatrixXd gram_;  ///< E

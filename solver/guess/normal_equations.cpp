@@ -71,4 +71,18 @@ void NormalEquations::solve() {
   for (std::size_t w = 0; w < width_; ++w) coefficients_[w] *= scale_[w];
 }
 
+void NormalEquations::factorise(const Eigen::MatrixXd& gram_of, const Eigen::VectorXi& order, int count,
+                                double damping) {
+  for (int k = 0; k < count; ++k)
+    for (int i = 0; i < count; ++i) gram(i, k) = gram_of(order[i], order[k]);
+  factorise(count, damping);
+}
+
+void NormalEquations::solve(const Eigen::VectorXi& order, VectorX& c) {
+  for (int i = 0; i < count_; ++i) right_side(i) = c[order[i]];
+  solve();
+  c.setZero();
+  for (int i = 0; i < count_; ++i) c[order[i]] = coefficient(i);
+}
+
 }  // namespace rodsweep

@@ -14,7 +14,7 @@ constexpr double smallest_mass = 1e-8;
 }  // namespace
 
 RitzGuess::RitzGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, int size, int collected, int lag_steps)
-    : inner_(std::move(inner)),
+    : WrappedGuess(std::move(inner)),
       size_(size),
       most_collected_(collected),
       lag_steps_(lag_steps),
@@ -48,14 +48,7 @@ Proposal RitzGuess::propose(const LinearSystem& system, const SolvePosition& at,
   if (space.known == 0) return proposal;
 
   proposal.products = proposal.start_products() + space.known;
-  if (!proposal.nonzero) {
-    space.residual = system.rhs();
-  } else if (proposal.residual) {
-    space.residual = *proposal.residual;
-  } else {
-    system.multiply(x0.data(), space.residual.data());
-    space.residual = system.rhs() - space.residual;
-  }
+  find_residual(system, proposal, x0, space.residual);
   projection_.project(*matrix_, space.residual, space.ritz, order_, space.known, space.scratch);
   projection_.deflate(*matrix_, space.ritz, space.products);
   projection_.subtract_product(space.residual);

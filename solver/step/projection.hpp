@@ -16,6 +16,9 @@
 
 namespace rodsweep {
 
+/// Zeros: a vector of unknowns for every rod.
+std::vector<VectorX> unknowns_of(const Scene& scene);
+
 /// The place of a solve in a simulation.
 struct SolvePosition {
   int step = 0;    ///< time step, from 0

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "solver/cg/cg_solver.hpp"
+#include "solver/guess/extrapolation_guess.hpp"
 #include "solver/plugin/plugin.hpp"
 #include "tests/solver/support.hpp"
 
