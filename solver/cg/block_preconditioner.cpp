@@ -46,19 +46,9 @@ class Complete : public BlockPreconditioner {
 
 std::unique_ptr<BlockPreconditioner> block_preconditioner(Preconditioner kind, const BlockMatrix& pattern,
                                                           int fill_levels) {
-  switch (kind) {
-    case Preconditioner::none:
-    case Preconditioner::jacobi:
-    case Preconditioner::point_block_jacobi:
-    case Preconditioner::icc:
-    case Preconditioner::condensed:
-    case Preconditioner::learned:
-    case Preconditioner::plugin:
-    case Preconditioner::python: break;
-    case Preconditioner::block_icc: return std::make_unique<Incomplete>(pattern, fill_levels);
-    case Preconditioner::cholesky:
-    case Preconditioner::lagged_cholesky: return std::make_unique<Complete>(pattern);
-  }
+  if (kind == Preconditioner::block_icc) return std::make_unique<Incomplete>(pattern, fill_levels);
+  if (kind == Preconditioner::cholesky || kind == Preconditioner::lagged_cholesky)
+    return std::make_unique<Complete>(pattern);
   return nullptr;
 }
 

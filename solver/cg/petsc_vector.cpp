@@ -146,7 +146,6 @@ void copy(const VectorX& from, Vec to) {
   petsc_check(entries_changed(to), "PetscObjectStateIncrease");
 }
 
-void copy(Vec from, VectorX& to) { std::copy_n(vector_data(from), to.size(), to.data()); }
 void add(Vec from, VectorX& to) { to += Eigen::Map<const VectorX>(vector_data(from), to.size()); }
 
 }  // namespace rodsweep

@@ -23,7 +23,6 @@ double* vector_data(Vec v);
 PetscErrorCode entries_changed(Vec v);
 
 void copy(const VectorX& from, Vec to);
-void copy(Vec from, VectorX& to);
 void add(Vec from, VectorX& to);
 
 }  // namespace rodsweep
