@@ -1,7 +1,6 @@
 #include "solver/cg/block_preconditioner.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "solver/factor/block_factor.hpp"
 #include "solver/factor/elimination_order.hpp"
@@ -19,12 +18,6 @@ class Incomplete : public BlockPreconditioner {
  private:
   IncompleteFactor factor_;
 };
-
-std::vector<int> given_order(const BlockMatrix& pattern) {
-  std::vector<int> order(at(pattern.block_rows()));
-  std::iota(order.begin(), order.end(), 0);
-  return order;
-}
 
 class Complete : public BlockPreconditioner {
  public:

@@ -24,8 +24,6 @@ bool ours(Vecs... vectors) {
   return (... && (vectors->ops->dot == dot));
 }
 
-double sum(const Lane8& v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
-
 double product(Vec x, Vec y) {
   const Lane8 *a = lanes(x), *b = lanes(y);
   const PetscInt count = lane_count(x);

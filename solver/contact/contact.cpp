@@ -147,12 +147,12 @@ void ContactFinder::find_pair(int a, int b, const Vector3* side) {
   const double slope = a_free.half.cross(b_free.half).norm();
   if (beside.low < beside.high && length > contact_distance / 5 &&
       length * slope < side_by_side * contact_distance * a_free.half.norm() * b_free.half.norm()) {
-    add({a, b, Contact::Place::low, beside.low, normal}, crossed);
-    add({a, b, Contact::Place::high, beside.high, normal}, crossed);
+    add({a, b, AxisPlace::low, beside.low, normal}, crossed);
+    add({a, b, AxisPlace::high, beside.high, normal}, crossed);
   } else {
     const AxisPoints at = closest_points(between(a_start, a_free, when), between(b_start, b_free, when));
     if (!crossed && (nearer_beyond(a, b, at.s, normal, when) || nearer_beyond(b, a, at.t, -normal, when))) return;
-    add({a, b, Contact::Place::closest, 0, normal}, crossed);
+    add({a, b, AxisPlace::closest, 0, normal}, crossed);
   }
 }
 
@@ -170,8 +170,8 @@ bool ContactFinder::nearer_beyond(int body, int other, double s, const Vector3& 
 void ContactFinder::find_below(int a, int half_space) {
   const Plane& plane = planes_[at(half_space)];
   const auto ia = at(a);
-  for (const auto place : {Contact::Place::low, Contact::Place::high}) {
-    const double s = place == Contact::Place::low ? -1 : 1;
+  for (const auto place : {AxisPlace::low, AxisPlace::high}) {
+    const double s = place == AxisPlace::low ? -1 : 1;
     const double height = std::min(plane.height(start_[ia].at(s), start_s_), plane.height(free_[ia].at(s), end_s_));
     if (height < reach_[ia]) add({a, -1 - half_space, place, s, plane.normal}, true);
   }
@@ -209,7 +209,7 @@ Gap ContactFinder::follow(Contact& contact, const std::vector<CapsuleAxis>& axes
   }
   const CapsuleAxis& b = axes[at(contact.b)];
   const double other_radius = bodies_.body(contact.b).radius;
-  const AxisPoints points = contact.place == Contact::Place::closest
+  const AxisPoints points = contact.place == AxisPlace::closest
                                 ? closest_points(a, b)
                                 : AxisPoints{contact.s, closest_point(b, a.at(contact.s))};
   const Vector3 on_a = a.at(points.s), on_b = b.at(points.t), between = on_a - on_b;

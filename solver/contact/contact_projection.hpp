@@ -106,10 +106,8 @@ class ContactProjection {
   Vector3 motion(const Active& active) const;
   void push(int point, const Vector3& impulse);
   void place_points();
-  Vector3 slip(std::size_t contact) const;
-  Vector3 velocity(const BodyPoint& at) const;
-  Vector3 velocity_before(const BodyPoint& at) const;  ///< the step
-  double shared_h(const Linear& at) const;
+  using Velocity = Vector3 (ContactMotion::*)(const BodyPoint&) const;
+  Vector3 slip(const Linear& at, Velocity velocity = &ContactMotion::velocity) const;
   double separation_short_of_rebound(std::size_t contact);
   double friction(const Contact& contact) const;
   double residual();
@@ -119,7 +117,6 @@ class ContactProjection {
   double sweep();
   double relax(Active& active);
   void change(Active& active, const Vector3& impulse);
-  void keep_impulses();
   void settle();
   void find_motions();
   void restart(double moved);

@@ -52,15 +52,9 @@ RodResponse::RodResponse(const Rod& rod)
       change_(6 * rod.joint_count()),
       multipliers_(6 * rod.joint_count()),
       own_(rod.segments.size()),
-      sides_(rod.segments.size()),
+      sides_(joints_by_segment(rod)),
       orientation_(rod.segments.size()),
-      turns_(rod.segments.size()) {
-  for (int k = 0; k < rod.joint_count(); ++k) {
-    const Joint& joint = rod.joints[at(k)];
-    sides_[at(joint.a)].push_back({k, false});
-    sides_[at(joint.b)].push_back({k, true});
-  }
-}
+      turns_(rod.segments.size()) {}
 
 void RodResponse::assemble(const Rod& rod, double dt) {
   multipliers_.setZero();
@@ -116,7 +110,7 @@ void RodResponse::load(const Rod& rod, int segment) {
     const Lane8 column = motion(rod.segments[s], turned(turns_[s].to_own, unit_lane[c]));
     for (int r = 0; r < 6; ++r) free(r, c) = column[r];
   }
-  for (const Side& side : sides_[s]) {
+  for (const JointEnd& side : sides_[s]) {
     const Eigen::Matrix<double, 6, 6> block = dense({system_.linearization().joints[at(side.joint)], side.is_b}) * free;
     for (int r = 0; r < 6; ++r)
       for (int c = 0; c < 6; ++c) columns_[at(6 * side.joint + r)][c] += block(r, c);
@@ -132,7 +126,7 @@ Block6 RodResponse::compliance(const Rod& rod, int of) {
   if (CondensedFactor* factor = factor_.condensed_factor()) {
     factor->motion_of(of, row);
   } else {
-    for (const Side& side : sides_[s]) {
+    for (const JointEnd& side : sides_[s]) {
       const JointSide jacobian(system_.linearization().joints[at(side.joint)], side.is_b);
       const Lane8* const x = columns_.data() + 6 * static_cast<std::ptrdiff_t>(side.joint);
       for (int j = 0; j < 3; ++j) {

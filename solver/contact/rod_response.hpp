@@ -44,10 +44,6 @@ class RodResponse {
   void forget_multipliers() { multipliers_.setZero(); }
 
  private:
-  struct Side {
-    int joint;
-    bool is_b;
-  };
   struct Turn {
     Lane8 to_world[3], to_own[3];  ///< columns of R and R^T, for both vectors of a motion
   };
@@ -56,9 +52,9 @@ class RodResponse {
   DirectFactor factor_;
   VectorX change_;  ///< J u, then -dlambda
   VectorX multipliers_;
-  std::vector<Lane8> own_, taken_back_;   ///< motions in the segments' frames
-  std::vector<std::vector<Side>> sides_;  ///< of every segment
-  std::vector<Quaternion> orientation_;   ///< at the assembly
+  std::vector<Lane8> own_, taken_back_;       ///< motions in the segments' frames
+  std::vector<std::vector<JointEnd>> sides_;  ///< of every segment
+  std::vector<Quaternion> orientation_;       ///< at the assembly
   std::vector<Turn> turns_;
   int loaded_ = -1;
   std::vector<Lane8> columns_;  ///< A^-1 J M^-1 R^T of the loaded segment, a column per lane

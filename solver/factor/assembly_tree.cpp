@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "solver/factor/elimination_order.hpp"
+
 namespace rodsweep {
 namespace {
 
@@ -158,8 +160,8 @@ AssemblyTree::AssemblyTree(const EliminationTree& tree) {
 }
 
 void AssemblyTree::find_rows(const BlockMatrix& pattern) {
-  std::vector<int> column_of(row.size()), seen_by(row.size(), -1), place(row.size());
-  for (std::size_t k = 0; k < row.size(); ++k) column_of[at(row[k])] = static_cast<int>(k);
+  const std::vector<int> column_of = inverse(row);
+  std::vector<int> seen_by(row.size(), -1), place(row.size());
   for (int s = 0; s < static_cast<int>(supernodes.size()); ++s) {
     Supernode& node = supernodes[at(s)];
     const int end = node.first + node.columns;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solver/factor/elimination_order.hpp"
 #include "solver/linear/block_kernels.hpp"
 
 namespace rodsweep {
@@ -46,14 +47,13 @@ inline bool is_zero(const Lane8 (&b)[6]) {
 
 BlockElimination::BlockElimination(const BlockMatrix& pattern, const std::vector<int>& order) {
   const std::size_t n = order.size();
-  std::vector<int> position(n);
-  for (std::size_t i = 0; i < n; ++i) position[at(order[i])] = static_cast<int>(n - 1 - i);
+  const std::vector<int> rows(order.rbegin(), order.rend()), position = inverse(rows);
 
   // The later neighbours of every column: those in A, and those of the columns whose first later neighbour it is.
   std::vector<std::vector<int>> children(n);
   std::vector<int> seen_by(n, -1), later;
   for (std::size_t i = 0; i < n; ++i) {
-    const int row = order[n - 1 - i];
+    const int row = rows[i];
     later.clear();
     const auto see = [&](int j) {
       if (j > static_cast<int>(i) && std::exchange(seen_by[at(j)], static_cast<int>(i)) != static_cast<int>(i))
@@ -69,7 +69,7 @@ BlockElimination::BlockElimination(const BlockMatrix& pattern, const std::vector
     const int begin = static_cast<int>(off_.size());
     for (const int p : later) {
       // Row r of B = A_kp is column r of A_pk.
-      const int source = pattern.find(order[n - 1 - at(p)], row);
+      const int source = pattern.find(rows[at(p)], row);
       fill_in_ += source < 0;
       off_.push_back({p, source, false, false});
     }

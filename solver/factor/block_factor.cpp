@@ -20,11 +20,7 @@ std::variant<BlockElimination, MultifrontalFactor> factor_of(const BlockMatrix& 
 }  // namespace
 
 std::vector<int> root_to_leaf_order(const Rod& rod) {
-  std::vector<std::vector<int>> joints_of(rod.segments.size());
-  for (int k = 0; k < rod.joint_count(); ++k) {
-    joints_of[at(rod.joints[at(k)].a)].push_back(k);
-    joints_of[at(rod.joints[at(k)].b)].push_back(k);
-  }
+  const std::vector<std::vector<JointEnd>> joints_of = joints_by_segment(rod);
   std::vector<std::size_t> left(rod.segments.size());  // joints of a segment that are not eliminated
   for (std::size_t s = 0; s < left.size(); ++s) left[s] = joints_of[s].size();
   std::deque<int> free;  // joints that can be eliminated now
@@ -34,7 +30,7 @@ std::vector<int> root_to_leaf_order(const Rod& rod) {
     seen[at(k)] = true;
   };
   const auto see_all_of = [&](std::size_t s) {
-    for (const int k : joints_of[s]) see(k);
+    for (const JointEnd& end : joints_of[s]) see(end.joint);
   };
   for (std::size_t s = 0; s < left.size(); ++s)
     if (left[s] == 1 || rod.segments[s].is_static) see_all_of(s);

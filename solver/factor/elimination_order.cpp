@@ -3,12 +3,24 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <numeric>
 
 namespace rodsweep {
 
+std::vector<int> given_order(const BlockMatrix& pattern) {
+  std::vector<int> order(at(pattern.block_rows()));
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+std::vector<int> inverse(const std::vector<int>& order) {
+  std::vector<int> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) place[at(order[i])] = static_cast<int>(i);
+  return place;
+}
+
 bool fills_in(const BlockMatrix& pattern, const std::vector<int>& order) {
-  std::vector<std::size_t> place(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) place[at(order[i])] = i;
+  const std::vector<int> place = inverse(order);
   const auto place_of = [&](int row) { return place[at(row)]; };
   std::vector<int> left;  // neighbours of a row that are eliminated after it
   for (const int row : order) {

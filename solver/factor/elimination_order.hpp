@@ -12,6 +12,12 @@
 
 namespace rodsweep {
 
+/// The rows as they are stored.
+std::vector<int> given_order(const BlockMatrix& pattern);
+
+/// The place of each row in an order.
+std::vector<int> inverse(const std::vector<int>& order);
+
 /// Whether elimination from the last to the first row of `order` has fill-in.
 bool fills_in(const BlockMatrix& pattern, const std::vector<int>& order);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "solver/factor/elimination_order.hpp"
 #include "solver/linear/block_kernels.hpp"
 
 namespace rodsweep {
@@ -71,11 +72,7 @@ std::vector<std::map<int, int>> later_neighbours(const BlockMatrix& pattern, con
 
 IncompleteFactor::IncompleteFactor(const BlockMatrix& pattern, const std::vector<int>& order, int levels) {
   const std::size_t n = order.size();
-  std::vector<int> position(n), row_at(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    row_at[i] = order[n - 1 - i];
-    position[at(row_at[i])] = static_cast<int>(i);
-  }
+  const std::vector<int> row_at(order.rbegin(), order.rend()), position = inverse(row_at);
   std::vector<std::map<int, int>> entries =
       later_neighbours(pattern, position, levels);  // levels, then entries of off_
   for (std::size_t i = 0; i < n; ++i) {
@@ -107,9 +104,7 @@ IncompleteFactor::IncompleteFactor(const BlockMatrix& pattern, const std::vector
 }
 
 bool IncompleteFactor::factorise(const BlockMatrix& a) {
-  double largest = 0;
-  for (int row = 0; row < a.block_rows(); ++row)
-    for (int r = 0; r < 6; ++r) largest = std::max(largest, a.diagonal_entry(row, r));
+  const double largest = largest_diagonal_entry(a);
   scale_ = std::isfinite(largest) && largest > 0 ? std::exp2(std::ilogb(largest)) : 1;
   shift_ = 0;
   if (eliminate(a)) return true;

@@ -74,4 +74,11 @@ double energy_norm_squared(const BlockMatrix& a, const VectorX& x, VectorX& scra
   return x.dot(scratch);
 }
 
+double largest_diagonal_entry(const BlockMatrix& a) {
+  double largest = 0;
+  for (int block_row = 0; block_row < a.block_rows(); ++block_row)
+    for (int row = 0; row < 6; ++row) largest = std::max(largest, a.diagonal_entry(block_row, row));
+  return largest;
+}
+
 }  // namespace rodsweep

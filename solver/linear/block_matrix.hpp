@@ -43,6 +43,8 @@ class BlockMatrix {
 /// s = D^-1/2, D the diagonal of A: the scaling of Jacobi. The caller sizes s.
 void inverse_root_diagonal(const BlockMatrix& a, VectorX& s);
 
+double largest_diagonal_entry(const BlockMatrix& a);
+
 /// r^T D^-1 r.
 double jacobi_norm_squared(const BlockMatrix& a, const VectorX& r);
 

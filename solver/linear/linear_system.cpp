@@ -19,19 +19,14 @@ LinearSystem::LinearSystem(const Rod& rod)
   const std::int64_t a_third_ns = 500ll * rod.joint_count();  // with a million joints this lasts seconds
   check_interrupted(a_third_ns);
   refuse_static_joints(rod);  // their rows would be alpha~ alone, which may be zero
-  std::vector<std::vector<Side>> by_segment(rod.segments.size());
-  for (int k = 0; k < rod.joint_count(); ++k) {
-    const Joint& joint = rod.joints[at(k)];
-    for (const bool is_b : {false, true}) {
-      const std::size_t segment = at(is_b ? joint.b : joint.a);
-      if (!rod.segments[segment].is_static) by_segment[segment].push_back({k, is_b});
-    }
-  }
+  std::vector<std::vector<JointEnd>> by_segment = joints_by_segment(rod);
+  for (std::size_t s = 0; s < by_segment.size(); ++s)
+    if (rod.segments[s].is_static) by_segment[s].clear();
   std::vector<std::pair<int, int>> couplings;
   side_start_.push_back(0);
-  for (const std::vector<Side>& sides : by_segment) {
-    for (const Side& u : sides)
-      for (const Side& v : sides) couplings.emplace_back(u.joint, v.joint);
+  for (const std::vector<JointEnd>& sides : by_segment) {
+    for (const JointEnd& u : sides)
+      for (const JointEnd& v : sides) couplings.emplace_back(u.joint, v.joint);
     sides_.insert(sides_.end(), sides.begin(), sides.end());
     side_start_.push_back(static_cast<int>(sides_.size()));
   }
@@ -41,9 +36,9 @@ LinearSystem::LinearSystem(const Rod& rod)
   if (matrix_.block_count() >= ConstraintProduct::least_blocks) product_.emplace(rod);
 
   std::vector<bool> written(matrix_.blocks.size(), false);
-  for (const std::vector<Side>& sides : by_segment)
-    for (const Side& u : sides)
-      for (const Side& v : sides) {
+  for (const std::vector<JointEnd>& sides : by_segment)
+    for (const JointEnd& u : sides)
+      for (const JointEnd& v : sides) {
         const int block = matrix_.find(u.joint, v.joint);
         contributions_.push_back({block, !written[at(block)]});
         written[at(block)] = true;
@@ -88,10 +83,10 @@ void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     const Segment& segment = rod.segments[s];
     for (int u = side_start_[s]; u < side_start_[s + 1]; ++u) {
-      const Side& at_u = sides_[at(u)];
+      const JointEnd& at_u = sides_[at(u)];
       const JointSide side_u(linearization_.joints[at(at_u.joint)], at_u.is_b);
       for (int v = side_start_[s]; v < side_start_[s + 1]; ++v, ++next) {
-        const Side& at_v = sides_[at(v)];
+        const JointEnd& at_v = sides_[at(v)];
         Block6& block = matrix_.blocks[at(next->block)];
         if (u == v) {
           const Vector6 softness = inverse_dt2 * rod.joints[at(at_u.joint)].compliance;

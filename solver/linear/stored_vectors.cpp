@@ -18,8 +18,6 @@ constexpr int parts = sizeof(Lane8) / sizeof(Lanes);
 inline const double* doubles(const Lane8* lanes) { return reinterpret_cast<const double*>(lanes); }
 inline double* doubles(Lane8* lanes) { return reinterpret_cast<double*>(lanes); }
 
-inline double sum(const Lane8& v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
-
 inline const Lanes* part_of(const Lane8* panel, int part) { return reinterpret_cast<const Lanes*>(panel) + part; }
 inline Lanes* part_of(Lane8* panel, int part) { return reinterpret_cast<Lanes*>(panel) + part; }
 
@@ -83,9 +81,8 @@ StoredVectors::StoredVectors(int unknowns, int count)
       dots_(at(panel_count_) + 1) {}
 
 void StoredVectors::set(int index, const VectorX& v) {
-  const int alone = index - 8 * panel_count_;
-  if (alone >= 0) {
-    for (std::size_t i = 0; i < unknowns_ / 6; ++i) single(alone)[i] = load6(v.data() + 6 * i);
+  if (const int number = index - 8 * panel_count_; number >= 0) {
+    for (std::size_t i = 0; i < unknowns_ / 6; ++i) single(number)[i] = load6(v.data() + 6 * i);
     return;
   }
   double* lane = doubles(panel(index / 8)) + index % 8;
@@ -210,7 +207,7 @@ void StoredVectors::combined(const VectorX& c, Take take) {
   std::fill(dots_.begin(), dots_.end(), Lane8{});
   std::copy_n(c.data(), count_, doubles(dots_.data()));
   const Lane8* factors = dots_.data();
-  const int rows = static_cast<int>(unknowns_ / 6), panels = panel_count_, alone = single_count_;
+  const int rows = static_cast<int>(unknowns_ / 6), panels = panel_count_, singles = single_count_;
   for (int i = 0; i < rows; ++i) {
     Lane8 sums[6]{};
     for (int p = 0; p < panels; ++p) {
@@ -220,7 +217,7 @@ void StoredVectors::combined(const VectorX& c, Take take) {
     }
     Lane8 of_row = sum_lanes(sums);
     const double* factor = doubles(factors + panels);
-    for (int s = 0; s < alone; ++s) of_row += factor[s] * singles_[at(s * rows + i)];
+    for (int s = 0; s < singles; ++s) of_row += factor[s] * singles_[at(s * rows + i)];
     take(i, of_row);
   }
 }

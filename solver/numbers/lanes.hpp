@@ -93,6 +93,7 @@ inline Lane4 cross(const Lane4& a, const Lane4& b) {
   return __builtin_shufflevector(c, c, 1, 2, 0, 3);
 }
 
+inline double sum(const Lane8& v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
 inline double sum(const Lane4& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 
 // Quaternions are in memory: loading a single entry into all lanes costs nothing.

@@ -136,6 +136,15 @@ Vector6 Rod::outer_impulse(std::size_t segment) const {
   return out;
 }
 
+std::vector<std::vector<JointEnd>> joints_by_segment(const Rod& rod) {
+  std::vector<std::vector<JointEnd>> out(rod.segments.size());
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    out[at(rod.joints[at(k)].a)].push_back({k, false});
+    out[at(rod.joints[at(k)].b)].push_back({k, true});
+  }
+  return out;
+}
+
 void refuse_static_joints(const Rod& rod) {
   for (int k = 0; k < rod.joint_count(); ++k) {
     const Joint& joint = rod.joints[at(k)];
