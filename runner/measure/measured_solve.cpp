@@ -15,7 +15,7 @@
 #include "runner/measure/timed_guess.hpp"
 #include "runner/plan/plan.hpp"
 #include "solver/cg/cg_solver.hpp"
-#include "solver/linear/rounding_level.hpp"
+#include "solver/linear/solve_outcome.hpp"
 #include "solver/numbers/narrow.hpp"
 #include "solver/plugin/plugin.hpp"
 #include "solver/step/stopwatch.hpp"

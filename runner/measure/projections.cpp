@@ -6,7 +6,7 @@
 #include "network/guess/state_network.hpp"
 #include "runner/measure/models.hpp"
 #include "runner/measure/solve_rows.hpp"
-#include "solver/step/xpbd_projection.hpp"
+#include "solver/step/gauss_seidel.hpp"
 
 namespace rodsweep {
 namespace {

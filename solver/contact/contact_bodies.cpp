@@ -15,28 +15,22 @@ namespace {
 
 constexpr double half_pi = 1.57079632679489661923;
 
-/// The pose of a segment while no joint is strained.
-struct RestPose {
-  Vector3 centre{0, 0, 0};
-  Quaternion orientation = Quaternion::Identity();
-};
-
 /// The rest pose of the other segment of a joint.
-RestPose beyond(const Joint& joint, int from, const RestPose& pose) {
+Pose beyond(const Joint& joint, int from, const Pose& pose) {
   const bool forwards = from == joint.a;
   const Quaternion turned = pose.orientation * (forwards ? joint.rest() : joint.rest().conjugate());
   const Vector3 &here = forwards ? joint.arm_a : joint.arm_b, &there = forwards ? joint.arm_b : joint.arm_a;
-  return {pose.centre + pose.orientation * here - turned * there, turned};
+  return {pose.position + pose.orientation * here - turned * there, turned};
 }
 
 /// A pose in the frame of another.
-RestPose relative(const RestPose& frame, const RestPose& pose) {
+Pose relative(const Pose& frame, const Pose& pose) {
   const Quaternion back = frame.orientation.conjugate();
-  return {back * (pose.centre - frame.centre), back * pose.orientation};
+  return {back * (pose.position - frame.position), back * pose.orientation};
 }
 
-CapsuleAxis axis(const RestPose& pose, const Segment& segment) {
-  return {pose.centre, segment.length_m / 2 * director(pose.orientation)};
+CapsuleAxis axis(const Pose& pose, const Segment& segment) {
+  return {pose.position, segment.length_m / 2 * director(pose.orientation)};
 }
 
 }  // namespace
@@ -136,7 +130,7 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Jo
   struct Meet {
     int a, b;
     Vector3 arm_a, arm_b;
-    RestPose pose;
+    Pose pose;
   };
   const auto segment = [&rod](int i) -> const Segment& { return rod.segments[at(i)]; };
   const auto joint = [&rod](const Meeting& of) -> const Joint& { return rod.joints[at(of.joint)]; };
@@ -172,11 +166,11 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Jo
       }
     }
   /// Calls visit(next, its arm, its rest pose) beyond the far end of b; a point between them is passed.
-  const auto outwards = [&](int b, const Vector3& arm_b, const RestPose& pose, const auto& visit) {
+  const auto outwards = [&](int b, const Vector3& arm_b, const Pose& pose, const auto& visit) {
     for (const Meeting& at : ways.joints_of(b)) {
       if (beside(at.arm, arm_b, segment(b).length_m)) continue;
       const auto [next, arm] = across(b, at);
-      const RestPose there = beyond(joint(at), b, pose);
+      const Pose there = beyond(joint(at), b, pose);
       if (segment(next).length_m > 0) {
         visit(next, arm, there);
         continue;
@@ -191,10 +185,10 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Jo
   while (!open.empty()) {
     const Meet pair = open.back();
     open.pop_back();
-    outwards(pair.b, pair.arm_b, pair.pose, [&](int next, const Vector3& arm, const RestPose& pose) {
+    outwards(pair.b, pair.arm_b, pair.pose, [&](int next, const Vector3& arm, const Pose& pose) {
       add({pair.a, next, pair.arm_a, arm, pose});
     });
-    outwards(pair.a, pair.arm_a, {}, [&](int next, const Vector3& arm, const RestPose& pose) {
+    outwards(pair.a, pair.arm_a, {}, [&](int next, const Vector3& arm, const Pose& pose) {
       add({next, pair.b, arm, pair.arm_b, relative(pose, pair.pose)});
     });
   }

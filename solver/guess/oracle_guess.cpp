@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "solver/numbers/split_mix.hpp"
+#include "solver/numbers/counter_random.hpp"
 
 namespace rodsweep {
 

@@ -5,11 +5,15 @@
 
 namespace rodsweep {
 
+/// Residuals and right-hand sides with no larger entry than this are rounding errors: entries are dimensionless and of
+/// order 1.
+inline constexpr double rounding_level = 1e-13;
+
 /// The numbers are stored in files (/solves/outcome); never renumber.
 enum class SolveOutcome : std::int8_t {
   not_run = 0,          ///< the row was never solved (Newton had converged, or the task ended early)
   converged = 1,        ///< the tolerance was met
-  zero_rhs = 2,         ///< b is zero to rounding: nothing to solve, zero iterations
+  zero_rhs = 2,         ///< b is zero to rounding (rounding_level): nothing to solve, zero iterations
   iteration_limit = 3,  ///< the limit of iterations, or that of rounding, was reached first
   diverged = 4,         ///< the residual exceeded the divergence limit
   indefinite = 5,       ///< the matrix or the preconditioner is not positive definite

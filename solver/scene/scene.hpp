@@ -15,8 +15,8 @@ namespace rodsweep {
 
 /// Position and orientation of a held segment at a time.
 struct Pose {
-  Vector3 position;
-  Quaternion orientation;
+  Vector3 position{0, 0, 0};
+  Quaternion orientation = Quaternion::Identity();
 };
 
 /// A moving clamp: the pose of a static segment as a function of time [s].

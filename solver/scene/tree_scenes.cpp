@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string>
 
+#include "solver/numbers/counter_random.hpp"
 #include "solver/numbers/rotation.hpp"
-#include "solver/numbers/split_mix.hpp"
 #include "solver/scene/tree_joints.hpp"
 
 namespace rodsweep {

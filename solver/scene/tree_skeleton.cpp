@@ -4,8 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "solver/numbers/counter_random.hpp"
 #include "solver/numbers/rotation.hpp"
-#include "solver/numbers/split_mix.hpp"
 #include "solver/rod/rod.hpp"
 
 namespace rodsweep {

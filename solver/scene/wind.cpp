@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/numbers/counter_random.hpp"
 #include "solver/numbers/lane_math.hpp"
-#include "solver/numbers/split_mix.hpp"
 
 namespace rodsweep {
 

@@ -16,9 +16,8 @@
 #include "solver/guess/totals_guess.hpp"
 #include "solver/guess/zero_guess.hpp"
 #include "solver/numbers/rotation.hpp"
-#include "solver/step/pbd_projection.hpp"
+#include "solver/step/gauss_seidel.hpp"
 #include "solver/step/time_step.hpp"
-#include "solver/step/xpbd_projection.hpp"
 #include "tests/solver/allocations.hpp"
 #include "tests/solver/support.hpp"
 
