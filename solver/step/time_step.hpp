@@ -60,11 +60,10 @@ class TimeStepper {
   void start();
   void find_loads();
   void predict(bool balanced);
-  void start_from_last_step();
-  void take_back();
+  void take_back(Projection& projection, StepReport& report);
   Newton iterate(Projection& projection, int until, StepReport& report);
   double end_of_step() const { return start_time_s_ + (steps_ + 1) * settings_.dt; }
-  bool is_lost() const;  ///< whether the balanced attempt must be undone
+  bool is_lost(Newton balanced) const;  ///< whether a balanced attempt that ended so must be undone
 
   Scene& scene_;
   StepSettings settings_;
