@@ -4,9 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "solver/cg/petsc_kernels.hpp"
 #include "solver/cg/petsc_ksp.hpp"
-#include "solver/cg/petsc_operator.hpp"
-#include "solver/cg/petsc_vector.hpp"
 #include "solver/factor/condensation.hpp"
 #include "solver/linear/interruption.hpp"
 

@@ -8,9 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "solver/cg/petsc_kernels.hpp"
 #include "solver/cg/petsc_ksp.hpp"
-#include "solver/cg/petsc_operator.hpp"
-#include "solver/cg/petsc_vector.hpp"
 #include "solver/linear/interruption.hpp"
 
 namespace rodsweep {

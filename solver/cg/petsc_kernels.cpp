@@ -1,13 +1,14 @@
-#include "solver/cg/petsc_vector.hpp"
+#include "solver/cg/petsc_kernels.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "solver/cg/petsc_check.hpp"
-#include "solver/numbers/lanes.hpp"
 
-// The table of vector operations is in PETSc's private header, which Debian installs with the public ones.
+// The table of vector operations and the matrix class need PETSc's private headers, which Debian installs with the public
+// ones.
+#include <petsc/private/matimpl.h>
 #include <petsc/private/vecimpl.h>
 
 namespace rodsweep {
@@ -123,6 +124,30 @@ PetscErrorCode create(PetscInt size, Vec* out) noexcept {
   return 0;
 }
 
+constexpr char class_name[] = "rodsweep_blocks";
+
+PetscErrorCode multiply(Mat m, Vec x, Vec y) noexcept {
+  BlockOperator& op = *static_cast<BlockOperator*>(m->data);
+  op.multiply(vector_data(x), vector_data(y));
+  ++op.products;
+  return entries_changed(y);
+}
+
+PetscErrorCode extract_diagonal(Mat m, Vec diagonal) noexcept {
+  const BlockMatrix& a = static_cast<BlockOperator*>(m->data)->a;
+  double* out = vector_data(diagonal);
+  for (int row = 0; row < a.block_rows(); ++row)
+    for (int i = 0; i < 6; ++i) out[6 * row + i] = a.diagonal_entry(row, i);
+  return entries_changed(diagonal);
+}
+
+PetscErrorCode create_class(Mat m) noexcept {
+  m->ops->mult = multiply;
+  m->ops->getdiagonal = extract_diagonal;
+  m->assembled = m->preallocated = PETSC_TRUE;
+  return PetscObjectChangeTypeName(reinterpret_cast<PetscObject>(m), class_name);
+}
+
 }  // namespace
 
 Vec create_vector(PetscInt size) {
@@ -145,5 +170,19 @@ void copy(const VectorX& from, Vec to) {
 }
 
 void add(Vec from, VectorX& to) { to += Eigen::Map<const VectorX>(vector_data(from), to.size()); }
+
+Mat create_operator(BlockOperator& op) {
+  const PetscInt n = op.a.unknowns();
+  Mat m = nullptr;
+  petsc_check(MatRegister(class_name, create_class), "MatRegister");
+  petsc_check(MatCreate(PETSC_COMM_SELF, &m), "MatCreate");
+  petsc_check(MatSetSizes(m, n, n, n, n), "MatSetSizes");
+  petsc_check(MatSetType(m, class_name), "MatSetType");
+  petsc_check(MatSetUp(m), "MatSetUp");
+  petsc_check(MatSetOption(m, MAT_SYMMETRIC, PETSC_TRUE), "MatSetOption");
+  use_our_vectors(m);
+  m->data = &op;
+  return m;
+}
 
 }  // namespace rodsweep
