@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-#include "solver/numbers/split_mix.hpp"
+#include "solver/numbers/counter_random.hpp"
 #include "solver/rod/rod.hpp"
 
 namespace rodsweep {

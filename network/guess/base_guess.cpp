@@ -1,7 +1,9 @@
 #include "network/guess/base_guess.hpp"
 
+#include "solver/guess/extrapolation_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
+#include "solver/guess/zero_guess.hpp"
 
 namespace rodsweep {
 

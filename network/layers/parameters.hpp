@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "network/layers/tensor.hpp"
-#include "solver/numbers/split_mix.hpp"
+#include "solver/numbers/counter_random.hpp"
 
 namespace rodsweep {
 

@@ -6,7 +6,7 @@
 #include "network/guess/base_guess.hpp"
 #include "network/training/state_examples.hpp"
 #include "network/training/turn.hpp"
-#include "solver/linear/rounding_level.hpp"
+#include "solver/linear/solve_outcome.hpp"
 
 namespace rodsweep {
 namespace {

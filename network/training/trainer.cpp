@@ -8,7 +8,7 @@
 
 #include "network/training/mse_loss.hpp"
 #include "network/training/threads.hpp"
-#include "solver/numbers/split_mix.hpp"
+#include "solver/numbers/counter_random.hpp"
 
 namespace rodsweep {
 namespace {

@@ -1,7 +1,7 @@
 // A rotation about gravity and a shift. They do not change a rod's motion, but they change some encodings.
 #pragma once
 
-#include "solver/numbers/split_mix.hpp"
+#include "solver/numbers/counter_random.hpp"
 #include "solver/rod/rod.hpp"
 
 namespace rodsweep {

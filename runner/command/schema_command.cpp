@@ -53,7 +53,7 @@ std::string schema_text() {
                             {"outcomes", outcomes},
                             {"planned", planned},
                             {"paths", paths},
-                           {"with_floor", with_floor(static_cast<const SceneSpec*>(nullptr))},
+                            {"with_floor", with_floor(static_cast<const SceneSpec*>(nullptr))},
                             {"gauss_seidel_iterations", *iterations.preset}}}});
 }
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "solver/numbers/narrow.hpp"
-#include "solver/rod/state_rows.hpp"
+#include "solver/rod/rod_arrays.hpp"
 
 namespace rodsweep {
 

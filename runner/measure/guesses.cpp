@@ -5,11 +5,16 @@
 #include "network/guess/coping_net_guess.hpp"
 #include "network/guess/knn_guess.hpp"
 #include "runner/measure/shared_inputs.hpp"
+#include "solver/guess/extrapolation_guess.hpp"
+#include "solver/guess/guarded_guess.hpp"
+#include "solver/guess/oracle_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/ritz_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
-#include "solver/plugin/plugin_guess.hpp"
+#include "solver/guess/wrapped_guess.hpp"
+#include "solver/guess/zero_guess.hpp"
+#include "solver/plugin/plugin.hpp"
 
 namespace rodsweep {
 namespace {

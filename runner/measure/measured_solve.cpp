@@ -10,9 +10,9 @@
 #include "runner/measure/timed_guess.hpp"
 #include "runner/plan/plan.hpp"
 #include "solver/cg/cg_solver.hpp"
-#include "solver/linear/rounding_level.hpp"
+#include "solver/linear/solve_outcome.hpp"
 #include "solver/numbers/narrow.hpp"
-#include "solver/plugin/plugin_preconditioner.hpp"
+#include "solver/plugin/plugin.hpp"
 #include "solver/step/observables.hpp"
 #include "solver/step/stopwatch.hpp"
 

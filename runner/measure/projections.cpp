@@ -6,7 +6,7 @@
 #include "network/guess/state_network.hpp"
 #include "runner/measure/measured_solve.hpp"
 #include "runner/measure/shared_inputs.hpp"
-#include "solver/step/xpbd_projection.hpp"
+#include "solver/step/gauss_seidel.hpp"
 
 namespace rodsweep {
 namespace {

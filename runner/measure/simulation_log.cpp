@@ -8,7 +8,7 @@
 #include "runner/measure/projections.hpp"
 #include "solver/numbers/larger_or_nan.hpp"
 #include "solver/numbers/narrow.hpp"
-#include "solver/rod/state_rows.hpp"
+#include "solver/rod/rod_arrays.hpp"
 #include "solver/step/observables.hpp"
 
 namespace rodsweep {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "network/guess/knn.hpp"
-#include "solver/guess/initial_guess.hpp"
+#include "solver/guess/oracle_guess.hpp"
 
 namespace rodsweep {
 

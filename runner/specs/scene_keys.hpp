@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runner/keys/key_table.hpp"
-#include "solver/scene/contact_settings.hpp"
+#include "solver/scene/scene.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/scene/wind.hpp"
 

@@ -10,7 +10,7 @@
 #include "runner/specs/guess_spec.hpp"
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/scene/scenes.hpp"
-#include "solver/step/pbd_projection.hpp"
+#include "solver/step/gauss_seidel.hpp"
 #include "solver/step/time_step.hpp"
 
 namespace rodsweep {

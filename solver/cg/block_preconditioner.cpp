@@ -1,7 +1,6 @@
 #include "solver/cg/block_preconditioner.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "solver/factor/block_factor.hpp"
 #include "solver/factor/elimination_order.hpp"
@@ -19,12 +18,6 @@ class Incomplete : public BlockPreconditioner {
  private:
   IncompleteFactor factor_;
 };
-
-std::vector<int> given_order(const BlockMatrix& pattern) {
-  std::vector<int> order(static_cast<std::size_t>(pattern.block_rows()));
-  std::iota(order.begin(), order.end(), 0);
-  return order;
-}
 
 class Complete : public BlockPreconditioner {
  public:
@@ -46,19 +39,9 @@ class Complete : public BlockPreconditioner {
 
 std::unique_ptr<BlockPreconditioner> block_preconditioner(Preconditioner kind, const BlockMatrix& pattern,
                                                           int fill_levels) {
-  switch (kind) {
-    case Preconditioner::none:
-    case Preconditioner::jacobi:
-    case Preconditioner::point_block_jacobi:
-    case Preconditioner::icc:
-    case Preconditioner::condensed:
-    case Preconditioner::learned:
-    case Preconditioner::plugin:
-    case Preconditioner::python: break;
-    case Preconditioner::block_icc: return std::make_unique<Incomplete>(pattern, fill_levels);
-    case Preconditioner::cholesky:
-    case Preconditioner::lagged_cholesky: return std::make_unique<Complete>(pattern);
-  }
+  if (kind == Preconditioner::block_icc) return std::make_unique<Incomplete>(pattern, fill_levels);
+  if (kind == Preconditioner::cholesky || kind == Preconditioner::lagged_cholesky)
+    return std::make_unique<Complete>(pattern);
   return nullptr;
 }
 

@@ -69,7 +69,7 @@ CgReport CgSolver::solve(const VectorX& b, VectorX& x, const CgStart& start, dou
 void CgSolver::keep_history(bool on) {
   keeps_history_ = on;
   history_.clear();
-  history_.reserve(on ? static_cast<std::size_t>(max_iterations_) + 2 : 0);
+  history_.reserve(on ? at(max_iterations_) + 2 : 0);
 }
 
 std::unique_ptr<CgSolver> make_cg(const Rod& rod, const LinearSystem& system, const CgSettings& settings) {

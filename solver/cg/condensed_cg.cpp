@@ -1,15 +1,11 @@
 #include "solver/cg/condensed_cg.hpp"
 
-#include <petscksp.h>
-
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "solver/cg/ksp_outcome.hpp"
-#include "solver/cg/petsc_check.hpp"
-#include "solver/cg/petsc_operator.hpp"
-#include "solver/cg/petsc_vector.hpp"
+#include "solver/cg/petsc_kernels.hpp"
+#include "solver/cg/petsc_ksp.hpp"
 #include "solver/factor/condensation.hpp"
 #include "solver/linear/interruption.hpp"
 
@@ -23,9 +19,9 @@ struct CondensedCg::Impl {
   BlockOperator op;
   bool stale = true, positive = true;
   VectorX g, d;
-  Mat product = nullptr;
-  KSP ksp = nullptr;
-  Vec rhs = nullptr, y = nullptr;
+  MatHandle product;
+  VecHandle rhs, y;
+  KspHandle ksp;  ///< null: no crossings
   double goal = 0, norm = 0;
   std::vector<double>* history = nullptr;  ///< null: not kept
 
@@ -38,25 +34,10 @@ struct CondensedCg::Impl {
         g(VectorX::Zero(op.a.unknowns())),
         d(VectorX::Zero(of.matrix().unknowns())) {
     if (op.a.block_rows() == 0) return;
-    product = create_operator(op);
-    rhs = create_vector(op.a.unknowns());
-    y = create_vector(op.a.unknowns());
-    petsc_check(KSPCreate(PETSC_COMM_SELF, &ksp), "KSPCreate");
-    petsc_check(KSPSetType(ksp, KSPCG), "KSPSetType");
-    petsc_check(KSPSetNormType(ksp, KSP_NORM_NATURAL), "KSPSetNormType");
-    PC pc = nullptr;
-    petsc_check(KSPGetPC(ksp, &pc), "KSPGetPC");
-    petsc_check(PCSetType(pc, PCSHELL), "PCSetType");
-    petsc_check(PCShellSetContext(pc, this), "PCShellSetContext");
-    petsc_check(PCShellSetApply(pc, apply), "PCShellSetApply");
-    petsc_check(KSPSetOperators(ksp, product, product), "KSPSetOperators");
-    petsc_check(KSPSetConvergenceTest(ksp, test, this, nullptr), "KSPSetConvergenceTest");
-  }
-  ~Impl() {
-    KSPDestroy(&ksp);
-    MatDestroy(&product);
-    VecDestroy(&y);
-    VecDestroy(&rhs);
+    product.reset(create_operator(op));
+    rhs.reset(create_vector(op.a.unknowns()));
+    y.reset(create_vector(op.a.unknowns()));
+    set_shell(create_cg(ksp, KSP_NORM_NATURAL, product, product, test, this), apply, this);
   }
 
   /// KSPCG applies it to each of its residuals before the convergence test.
@@ -119,11 +100,9 @@ CgReport CondensedCg::iterate(const Residual& first, VectorX& x, double toleranc
   check_interrupted(0);
   s.condensation.expand(first.entries, vector_data(s.y), s.d);
   x += s.d;
-  PetscInt iterations = 0;
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  petsc_check(KSPGetIterationNumber(s.ksp, &iterations), "KSPGetIterationNumber");
-  petsc_check(KSPGetConvergedReason(s.ksp, &reason), "KSPGetConvergedReason");
-  return {outcome_of(reason), 1 + static_cast<int>(iterations), 0};
+  CgReport report = report_of(s.ksp);
+  ++report.iterations;
+  return report;
 }
 
 }  // namespace rodsweep

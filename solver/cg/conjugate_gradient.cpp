@@ -1,7 +1,5 @@
 #include "solver/cg/conjugate_gradient.hpp"
 
-#include <petscksp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -10,10 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "solver/cg/ksp_outcome.hpp"
-#include "solver/cg/petsc_check.hpp"
-#include "solver/cg/petsc_operator.hpp"
-#include "solver/cg/petsc_vector.hpp"
+#include "solver/cg/petsc_kernels.hpp"
+#include "solver/cg/petsc_ksp.hpp"
 #include "solver/linear/interruption.hpp"
 
 namespace rodsweep {
@@ -48,15 +44,8 @@ PCType pc_type(Preconditioner p) {
     case Preconditioner::jacobi: return PCJACOBI;
     case Preconditioner::point_block_jacobi: return PCPBJACOBI;
     case Preconditioner::icc: return PCICC;
-    case Preconditioner::block_icc:
-    case Preconditioner::cholesky:
-    case Preconditioner::lagged_cholesky:
-    case Preconditioner::learned:
-    case Preconditioner::plugin:
-    case Preconditioner::python: return PCSHELL;
-    case Preconditioner::condensed: break;  // see make_cg()
+    default: return PCSHELL;
   }
-  return PCNONE;
 }
 
 /// A preconditioner that is not PETSc's.
@@ -85,7 +74,7 @@ PetscErrorCode apply_shell(PC pc, Vec r, Vec z) noexcept {
 struct Projected {
   PC inner = nullptr;
   Deflation* deflation = nullptr;
-  Vec reduced = nullptr;
+  VecHandle reduced;
 };
 
 PetscErrorCode apply_projected(PC pc, Vec r, Vec z) noexcept {
@@ -106,170 +95,129 @@ struct ConjugateGradient::Impl {
   const BlockMatrix& a;
   BlockOperator op;
   CgSettings settings;
-  Mat product = nullptr;
-  Mat entries = nullptr;  ///< copy of the blocks for PETSc's preconditioners that need them; else null
-  KSP ksp = nullptr;
+  VecHandle b, x, scratch;
+  MatHandle product;
+  MatHandle entries;  ///< copy of the blocks for PETSc's preconditioners that need them; else null
   Shell own;
-  PC plain = nullptr, shell = nullptr;  ///< the preconditioner; with projections, once used
   Projected projected;
-  Vec b = nullptr, x = nullptr, scratch = nullptr;
+  PcHandle plain, shell;  ///< the preconditioner; with projections, once used
+  KspHandle ksp;
   Target target;
   int most = 0;       ///< PETSc's limit of iterations
   bool stale = true;  ///< the preconditioner belongs to older entries
   std::vector<PetscReal> history_buffer;
 
-  Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s);
-  ~Impl() { destroy(); }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s)
+      : a(matrix),
+        op{matrix, without_blocks},
+        settings(s),
+        b(create_vector(a.unknowns())),
+        x(create_vector(a.unknowns())),
+        scratch(create_vector(a.unknowns())),
+        product(create_operator(op)) {
+    if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
+    if (settings.preconditioner == Preconditioner::icc) create_entries(true);
+    own.preconditioner = settings.make_given ? settings.make_given()
+                                             : block_preconditioner(settings.preconditioner, a, settings.fill_levels);
 
-  void create();
-  void destroy();
-  void create_entries(bool symmetric);
-  void copy_entries();
-  void refresh();
-  void use(Deflation* deflation);
-  void check_applications();
-  void limit_iterations(int most_iterations);
-  double precondition(const VectorX& r);
+    const PC pc = create_cg(ksp, settings.norm == Norm::natural ? KSP_NORM_NATURAL : KSP_NORM_UNPRECONDITIONED, product,
+                            entries ? entries : product, test_convergence, &target);
+    petsc_check(PetscObjectReference(reinterpret_cast<PetscObject>(pc)), "PetscObjectReference");
+    plain.reset(pc);
+    petsc_check(PCSetType(plain, pc_type(settings.preconditioner)), "PCSetType");
+    if (own.preconditioner) set_shell(plain, apply_shell, &own);
+  }
+
+  void create_entries(bool symmetric) {
+    std::vector<PetscInt> start{0}, columns;
+    for (int row = 0; row < a.block_rows(); ++row) {
+      for (int k = a.row_begin(row); k < a.row_end(row); ++k)
+        if (!symmetric || a.column(k) >= row) columns.push_back(a.column(k));
+      start.push_back(static_cast<PetscInt>(columns.size()));
+    }
+    const PetscInt n = a.unknowns();
+    Mat made = nullptr;
+    petsc_check(MatCreate(PETSC_COMM_SELF, &made), "MatCreate");
+    entries.reset(made);
+    petsc_check(MatSetSizes(entries, n, n, n, n), "MatSetSizes");
+    petsc_check(MatSetType(entries, symmetric ? MATSEQSBAIJ : MATSEQBAIJ), "MatSetType");
+    if (symmetric)
+      petsc_check(MatSeqSBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
+                  "MatSeqSBAIJSetPreallocationCSR");
+    else
+      petsc_check(MatSeqBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
+                  "MatSeqBAIJSetPreallocationCSR");
+    use_our_vectors(entries);
+  }
+
+  void refresh() {
+    if (!stale) return;
+    stale = false;
+    own.positive = !own.preconditioner || own.preconditioner->set_up(a);
+    if (entries) copy_entries();
+    // Tells PETSc that the entries are new; without it the old preconditioner is kept silently.
+    Mat changed = entries ? entries : product;
+    petsc_check(MatAssemblyBegin(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin");
+    petsc_check(MatAssemblyEnd(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
+  }
+
+  void use(Deflation* deflation) {
+    if (deflation && !shell) {
+      projected.reduced.reset(create_vector(a.unknowns()));
+      PC made = nullptr;
+      petsc_check(PCCreate(PETSC_COMM_SELF, &made), "PCCreate");
+      shell.reset(made);
+      petsc_check(PCSetOperators(shell, product, product), "PCSetOperators");
+      set_shell(shell, apply_projected, &projected);
+    }
+    if (shell && (deflation != nullptr) != (projected.deflation != nullptr))
+      petsc_check(KSPSetPC(ksp, deflation ? shell : plain), "KSPSetPC");
+    projected.inner = plain;
+    projected.deflation = deflation;
+  }
+
+  /// Throws what an application of the preconditioner threw.
+  void check_applications() {
+    if (own.failure) std::rethrow_exception(std::exchange(own.failure, nullptr));
+  }
+
+  void limit_iterations(int most_iterations) {
+    if (std::exchange(most, most_iterations) == most_iterations) return;
+    petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, most), "KSPSetTolerances");
+  }
+
+  /// Sets `scratch` to z = P^-1 r and returns r.z.
+  double precondition(const VectorX& r) {
+    copy(r, b);
+    use(nullptr);
+    petsc_check(KSPSetUp(ksp), "KSPSetUp");
+    petsc_check(PCApply(plain, b, scratch), "PCApply");
+    check_applications();
+    PetscScalar product_with_z = 0;
+    petsc_check(VecDot(b, scratch, &product_with_z), "VecDot");
+    return product_with_z;
+  }
+
+  void copy_entries() {
+    // PETSc's blocks: column-major, unpadded, in block-row order; the symmetric format holds the upper blocks.
+    const bool symmetric = settings.preconditioner == Preconditioner::icc;
+    PetscScalar* out = nullptr;
+    petsc_check(symmetric ? MatSeqSBAIJGetArray(entries, &out) : MatSeqBAIJGetArray(entries, &out),
+                "MatSeqBAIJGetArray");
+    PetscScalar* next = out;
+    for (int row = 0; row < a.block_rows(); ++row)
+      for (int k = a.row_begin(row); k < a.row_end(row); ++k) {
+        if (symmetric && a.column(k) < row) continue;
+        for (const Lane8& column : a.blocks[at(k)].column) store6(std::exchange(next, next + 6), column);
+      }
+    petsc_check(symmetric ? MatSeqSBAIJRestoreArray(entries, &out) : MatSeqBAIJRestoreArray(entries, &out),
+                "MatSeqBAIJRestoreArray");
+  }
+
   bool is_of_the_user() const {
     return settings.preconditioner == Preconditioner::plugin || settings.preconditioner == Preconditioner::python;
   }
 };
-
-ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s)
-    : a(matrix), op{matrix, without_blocks}, settings(s) {
-  try {
-    create();
-  } catch (...) {  // if out of memory, later tasks need this memory
-    destroy();
-    throw;
-  }
-}
-
-void ConjugateGradient::Impl::create() {
-  const PetscInt n = a.unknowns();
-  product = create_operator(op);
-  b = create_vector(n);
-  x = create_vector(n);
-  scratch = create_vector(n);
-
-  if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
-  if (settings.preconditioner == Preconditioner::icc) create_entries(true);
-  own.preconditioner = settings.make_given ? settings.make_given()
-                                           : block_preconditioner(settings.preconditioner, a, settings.fill_levels);
-
-  petsc_check(KSPCreate(PETSC_COMM_SELF, &ksp), "KSPCreate");
-  petsc_check(KSPSetType(ksp, KSPCG), "KSPSetType");
-  petsc_check(KSPSetNormType(ksp, settings.norm == Norm::natural ? KSP_NORM_NATURAL : KSP_NORM_UNPRECONDITIONED),
-              "KSPSetNormType");
-  petsc_check(KSPGetPC(ksp, &plain), "KSPGetPC");
-  petsc_check(PetscObjectReference(reinterpret_cast<PetscObject>(plain)), "PetscObjectReference");
-  petsc_check(PCSetType(plain, pc_type(settings.preconditioner)), "PCSetType");
-  if (own.preconditioner) {
-    petsc_check(PCShellSetContext(plain, &own), "PCShellSetContext");
-    petsc_check(PCShellSetApply(plain, apply_shell), "PCShellSetApply");
-  }
-  petsc_check(KSPSetOperators(ksp, product, entries ? entries : product), "KSPSetOperators");
-  petsc_check(KSPSetConvergenceTest(ksp, test_convergence, &target, nullptr), "KSPSetConvergenceTest");
-}
-
-void ConjugateGradient::Impl::destroy() {
-  // A destructor cannot report errors; PETSc prints them.
-  KSPDestroy(&ksp);
-  PCDestroy(&shell);
-  PCDestroy(&plain);
-  MatDestroy(&entries);
-  MatDestroy(&product);
-  VecDestroy(&projected.reduced);
-  VecDestroy(&scratch);
-  VecDestroy(&x);
-  VecDestroy(&b);
-}
-
-void ConjugateGradient::Impl::create_entries(bool symmetric) {
-  std::vector<PetscInt> start{0}, columns;
-  for (int row = 0; row < a.block_rows(); ++row) {
-    for (int k = a.row_begin(row); k < a.row_end(row); ++k)
-      if (!symmetric || a.column(k) >= row) columns.push_back(a.column(k));
-    start.push_back(static_cast<PetscInt>(columns.size()));
-  }
-  const PetscInt n = a.unknowns();
-  petsc_check(MatCreate(PETSC_COMM_SELF, &entries), "MatCreate");
-  petsc_check(MatSetSizes(entries, n, n, n, n), "MatSetSizes");
-  petsc_check(MatSetType(entries, symmetric ? MATSEQSBAIJ : MATSEQBAIJ), "MatSetType");
-  if (symmetric)
-    petsc_check(MatSeqSBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
-                "MatSeqSBAIJSetPreallocationCSR");
-  else
-    petsc_check(MatSeqBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
-                "MatSeqBAIJSetPreallocationCSR");
-  use_our_vectors(entries);
-}
-
-void ConjugateGradient::Impl::refresh() {
-  if (!stale) return;
-  stale = false;
-  own.positive = !own.preconditioner || own.preconditioner->set_up(a);
-  if (entries) copy_entries();
-  // Tells PETSc that the entries are new; without it the old preconditioner is kept silently.
-  Mat changed = entries ? entries : product;
-  petsc_check(MatAssemblyBegin(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin");
-  petsc_check(MatAssemblyEnd(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
-}
-
-void ConjugateGradient::Impl::use(Deflation* deflation) {
-  if (deflation && !shell) {
-    projected.reduced = create_vector(a.unknowns());
-    petsc_check(PCCreate(PETSC_COMM_SELF, &shell), "PCCreate");
-    petsc_check(PCSetType(shell, PCSHELL), "PCSetType");
-    petsc_check(PCSetOperators(shell, product, product), "PCSetOperators");
-    petsc_check(PCShellSetContext(shell, &projected), "PCShellSetContext");
-    petsc_check(PCShellSetApply(shell, apply_projected), "PCShellSetApply");
-  }
-  if (shell && (deflation != nullptr) != (projected.deflation != nullptr))
-    petsc_check(KSPSetPC(ksp, deflation ? shell : plain), "KSPSetPC");
-  projected.inner = plain;
-  projected.deflation = deflation;
-}
-
-/// Throws what an application of the preconditioner threw.
-void ConjugateGradient::Impl::check_applications() {
-  if (own.failure) std::rethrow_exception(std::exchange(own.failure, nullptr));
-}
-
-void ConjugateGradient::Impl::limit_iterations(int most_iterations) {
-  if (std::exchange(most, most_iterations) == most_iterations) return;
-  petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, most), "KSPSetTolerances");
-}
-
-/// Sets `scratch` to z = P^-1 r and returns r.z.
-double ConjugateGradient::Impl::precondition(const VectorX& r) {
-  copy(r, b);
-  use(nullptr);
-  petsc_check(KSPSetUp(ksp), "KSPSetUp");
-  petsc_check(PCApply(plain, b, scratch), "PCApply");
-  check_applications();
-  PetscScalar product_with_z = 0;
-  petsc_check(VecDot(b, scratch, &product_with_z), "VecDot");
-  return product_with_z;
-}
-
-void ConjugateGradient::Impl::copy_entries() {
-  // PETSc's blocks: column-major, unpadded, in block-row order; the symmetric format holds the upper blocks.
-  const bool symmetric = settings.preconditioner == Preconditioner::icc;
-  PetscScalar* out = nullptr;
-  petsc_check(symmetric ? MatSeqSBAIJGetArray(entries, &out) : MatSeqBAIJGetArray(entries, &out), "MatSeqBAIJGetArray");
-  PetscScalar* at = out;
-  for (int row = 0; row < a.block_rows(); ++row)
-    for (int k = a.row_begin(row); k < a.row_end(row); ++k) {
-      if (symmetric && a.column(k) < row) continue;
-      for (const Lane8& column : a.blocks[static_cast<std::size_t>(k)].column)
-        store6(std::exchange(at, at + 6), column);
-    }
-  petsc_check(symmetric ? MatSeqSBAIJRestoreArray(entries, &out) : MatSeqBAIJRestoreArray(entries, &out),
-              "MatSeqBAIJRestoreArray");
-}
 
 ConjugateGradient::ConjugateGradient(const BlockMatrix& a, const CgSettings& settings)
     : CgSolver(iteration_limit(settings, a.unknowns()), a.unknowns()),
@@ -307,18 +255,15 @@ CgReport ConjugateGradient::iterate(const Residual& first, VectorX& x, double to
   s.check_applications();
   check_interrupted(0);
   add(s.x, x);
-
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  PetscInt iterations = 0;
-  petsc_check(KSPGetConvergedReason(s.ksp, &reason), "KSPGetConvergedReason");
-  petsc_check(KSPGetIterationNumber(s.ksp, &iterations), "KSPGetIterationNumber");
   if (keeps_history_) {
     const PetscReal* norms = nullptr;
     PetscInt count = 0;
     petsc_check(KSPGetResidualHistory(s.ksp, &norms, &count), "KSPGetResidualHistory");
     history_.insert(history_.end(), norms, norms + count);
   }
-  return {outcome_of(reason), static_cast<int>(iterations), s.op.products};
+  CgReport report = report_of(s.ksp);
+  report.products = s.op.products;
+  return report;
 }
 
 /// A preconditioner P that is zero on a part of r leaves that part, and its natural norm does not see it. In the 2-norm
@@ -354,7 +299,7 @@ double ConjugateGradient::norm_of(const VectorX& b) {
 void ConjugateGradient::keep_history(bool on) {
   CgSolver::keep_history(on);
   Impl& s = *impl_;
-  s.history_buffer.resize(on ? static_cast<std::size_t>(max_iterations_) + 1 : 0);
+  s.history_buffer.resize(on ? at(max_iterations_) + 1 : 0);
   petsc_check(KSPSetResidualHistory(s.ksp, on ? s.history_buffer.data() : nullptr,
                                     static_cast<PetscInt>(s.history_buffer.size()), PETSC_TRUE),
               "KSPSetResidualHistory");

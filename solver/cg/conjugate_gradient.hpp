@@ -1,6 +1,6 @@
 // Conjugate gradients on A x = b by PETSc's KSPCG. The history of residuals gives the iterations to any tolerance.
 //
-// The operator is BlockMatrix::multiply or that of a system (petsc_operator.hpp). Preconditioners are PETSc's, with a
+// The operator is BlockMatrix::multiply or that of a system (petsc_kernels.hpp). Preconditioners are PETSc's, with a
 // copy of the blocks in its format if they need entries, or ours (block_preconditioner.hpp). If one of ours is not
 // positive definite, no iteration is made. None is set up if the guess already meets the tolerance (2-norm). The solve
 // diverges only above 1e30 times `reference`: a guess from history may start far above a small b. Products: one for

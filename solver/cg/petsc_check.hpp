@@ -7,7 +7,7 @@
 #include <new>
 #include <string>
 
-#include "solver/cg/petsc_error.hpp"
+#include "solver/cg/petsc_session.hpp"
 
 namespace rodsweep {
 

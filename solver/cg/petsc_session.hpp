@@ -6,12 +6,17 @@
 // PetscError.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "solver/cg/petsc_error.hpp"
-
 namespace rodsweep {
+
+/// A PETSc call failed: a bug or lack of memory, not an error of the user. The text names the call.
+class PetscError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 class PetscSession {
  public:

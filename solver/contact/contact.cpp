@@ -118,7 +118,7 @@ void ContactFinder::let_rebound(const Scene& scene) {
 }
 
 void ContactFinder::find_pair(int a, int b, const Vector3* side) {
-  const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
+  const auto ia = at(a), ib = at(b);
   const double contact_distance = bodies_.body(a).radius + bodies_.body(b).radius;
   const CapsuleAxis &a_start = start_[ia], &b_start = start_[ib], &a_free = free_[ia], &b_free = free_[ib];
   const double motion = relative_motion(a_start, a_free, b_start, b_free);
@@ -147,19 +147,19 @@ void ContactFinder::find_pair(int a, int b, const Vector3* side) {
   const double slope = a_free.half.cross(b_free.half).norm();
   if (beside.low < beside.high && length > contact_distance / 5 &&
       length * slope < side_by_side * contact_distance * a_free.half.norm() * b_free.half.norm()) {
-    add({a, b, Contact::Place::low, beside.low, normal}, crossed);
-    add({a, b, Contact::Place::high, beside.high, normal}, crossed);
+    add({a, b, AxisPlace::low, beside.low, normal}, crossed);
+    add({a, b, AxisPlace::high, beside.high, normal}, crossed);
   } else {
     const AxisPoints at = closest_points(between(a_start, a_free, when), between(b_start, b_free, when));
     if (!crossed && (nearer_beyond(a, b, at.s, normal, when) || nearer_beyond(b, a, at.t, -normal, when))) return;
-    add({a, b, Contact::Place::closest, 0, normal}, crossed);
+    add({a, b, AxisPlace::closest, 0, normal}, crossed);
   }
 }
 
 bool ContactFinder::nearer_beyond(int body, int other, double s, const Vector3& away, double time) const {
   if (std::abs(s) < 1) return false;
   for (const ContactBodies::Next& next : bodies_.next(body)) {
-    const auto i = static_cast<std::size_t>(next.body);
+    const auto i = at(next.body);
     if (!bodies_.matter(std::min(next.body, other), std::max(next.body, other))) continue;
     if (next.end * s > 0 && next.into * away.dot(between(start_[i], free_[i], time).half.normalized()) < -catching)
       return true;
@@ -168,10 +168,10 @@ bool ContactFinder::nearer_beyond(int body, int other, double s, const Vector3& 
 }
 
 void ContactFinder::find_below(int a, int half_space) {
-  const Plane& plane = planes_[static_cast<std::size_t>(half_space)];
-  const auto ia = static_cast<std::size_t>(a);
-  for (const auto place : {Contact::Place::low, Contact::Place::high}) {
-    const double s = place == Contact::Place::low ? -1 : 1;
+  const Plane& plane = planes_[at(half_space)];
+  const auto ia = at(a);
+  for (const auto place : {AxisPlace::low, AxisPlace::high}) {
+    const double s = place == AxisPlace::low ? -1 : 1;
     const double height = std::min(plane.height(start_[ia].at(s), start_s_), plane.height(free_[ia].at(s), end_s_));
     if (height < reach_[ia]) add({a, -1 - half_space, place, s, plane.normal}, true);
   }
@@ -194,25 +194,25 @@ bool ContactFinder::closes(Contact contact, const std::vector<CapsuleAxis>& axes
 }
 
 const Vector3& ContactFinder::velocity(int obstacle) const {
-  return obstacle < 0 ? planes_[static_cast<std::size_t>(-1 - obstacle)].velocity : bodies_.velocity(obstacle);
+  return obstacle < 0 ? planes_[at(-1 - obstacle)].velocity : bodies_.velocity(obstacle);
 }
 
 Gap ContactFinder::follow(Contact& contact, const std::vector<CapsuleAxis>& axes, double time_s) const {
-  const CapsuleAxis& a = axes[static_cast<std::size_t>(contact.a)];
+  const CapsuleAxis& a = axes[at(contact.a)];
   const double radius = bodies_.body(contact.a).radius;
   if (contact.b < 0) {
-    const Plane& plane = planes_[static_cast<std::size_t>(-1 - contact.b)];
+    const Plane& plane = planes_[at(-1 - contact.b)];
     const Vector3 end = a.at(contact.s);
     const double width = plane.height(end, time_s) - radius;
     const Vector3 surface = end - radius * plane.normal;
     return {width, surface, surface - width * plane.normal};
   }
-  const CapsuleAxis& b = axes[static_cast<std::size_t>(contact.b)];
+  const CapsuleAxis& b = axes[at(contact.b)];
   const double other_radius = bodies_.body(contact.b).radius;
-  const AxisPoints at = contact.place == Contact::Place::closest
-                            ? closest_points(a, b)
-                            : AxisPoints{contact.s, closest_point(b, a.at(contact.s))};
-  const Vector3 on_a = a.at(at.s), on_b = b.at(at.t), between = on_a - on_b;
+  const AxisPoints points = contact.place == AxisPlace::closest
+                                ? closest_points(a, b)
+                                : AxisPoints{contact.s, closest_point(b, a.at(contact.s))};
+  const Vector3 on_a = a.at(points.s), on_b = b.at(points.t), between = on_a - on_b;
   const double distance = between.norm();
   if (distance > 1e-9 * (radius + other_radius) && contact.normal.dot(between) >= 0)
     contact.normal = between / distance;

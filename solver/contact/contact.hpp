@@ -33,12 +33,13 @@ struct Impact {
   double limit = 0;    ///< of the rebound in this Newton iteration
 };
 
-struct Contact {
-  enum class Place { closest, low, high };  ///< on a's axis: closest to b, or at a lower or higher s
+/// Where on the axis of the first body a contact is: closest to the other, or at a lower or higher s.
+enum class AxisPlace { closest, low, high };
 
+struct Contact {
   int a;  ///< body, see ContactBodies
   int b;  ///< body after a, or -1 - i for half-space i
-  Place place;
+  AxisPlace place;
   double s;                  ///< on a's axis, unless closest
   Vector3 normal;            ///< n
   double allowed = 0;        ///< lower limit of the gap |x_a - x_b| - R, without an impact [m]

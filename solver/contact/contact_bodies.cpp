@@ -15,28 +15,22 @@ namespace {
 
 constexpr double half_pi = 1.57079632679489661923;
 
-/// The pose of a segment while no joint is strained.
-struct RestPose {
-  Vector3 centre{0, 0, 0};
-  Quaternion orientation = Quaternion::Identity();
-};
-
 /// The rest pose of the other segment of a joint.
-RestPose beyond(const Joint& joint, int from, const RestPose& pose) {
+Pose beyond(const Joint& joint, int from, const Pose& pose) {
   const bool forwards = from == joint.a;
   const Quaternion turned = pose.orientation * (forwards ? joint.rest() : joint.rest().conjugate());
   const Vector3 &here = forwards ? joint.arm_a : joint.arm_b, &there = forwards ? joint.arm_b : joint.arm_a;
-  return {pose.centre + pose.orientation * here - turned * there, turned};
+  return {pose.position + pose.orientation * here - turned * there, turned};
 }
 
 /// A pose in the frame of another.
-RestPose relative(const RestPose& frame, const RestPose& pose) {
+Pose relative(const Pose& frame, const Pose& pose) {
   const Quaternion back = frame.orientation.conjugate();
-  return {back * (pose.centre - frame.centre), back * pose.orientation};
+  return {back * (pose.position - frame.position), back * pose.orientation};
 }
 
-CapsuleAxis axis(const RestPose& pose, const Segment& segment) {
-  return {pose.centre, segment.length_m / 2 * director(pose.orientation)};
+CapsuleAxis axis(const Pose& pose, const Segment& segment) {
+  return {pose.position, segment.length_m / 2 * director(pose.orientation)};
 }
 
 }  // namespace
@@ -46,7 +40,7 @@ ContactBodies::ContactBodies(const Scene& scene) {
     const Rod& rod = scene.rods[r];
     const int first = count();
     for (int s = 0; s < rod.segment_count(); ++s) {
-      const Segment& segment = rod.segments[static_cast<std::size_t>(s)];
+      const Segment& segment = rod.segments[at(s)];
       bodies_.push_back({static_cast<int>(r), s, segment.radius_m, segment.length_m / 2, segment.inverse_mass > 0});
     }
     excluded_.resize(bodies_.size());
@@ -60,16 +54,16 @@ ContactBodies::ContactBodies(const Scene& scene) {
 
 void ContactBodies::connect(const Rod& rod, int first_body) {
   const auto place = [&rod](int segment, const Vector3& arm) {  // -1, 0, 1: first end, in between, last end
-    const double quarter = rod.segments[static_cast<std::size_t>(segment)].length_m / 4;
+    const double quarter = rod.segments[at(segment)].length_m / 4;
     return arm.z() > quarter ? 1 : arm.z() < -quarter ? -1 : 0;
   };
   const auto connect = [&](int from, int end, int to, int there) {
     if (end == 0) return;
     for (const int into : {-1, 1})
-      if (there != into) next_[static_cast<std::size_t>(first_body + from)].push_back({end, first_body + to, into});
+      if (there != into) next_[at(first_body + from)].push_back({end, first_body + to, into});
   };
   std::map<int, std::vector<std::pair<int, int>>> at_point;  // segments that end at one without length, and which end
-  const auto is_point = [&rod](int segment) { return rod.segments[static_cast<std::size_t>(segment)].length_m == 0; };
+  const auto is_point = [&rod](int segment) { return rod.segments[at(segment)].length_m == 0; };
   for (const Joint& joint : rod.joints) {
     const int on_a = place(joint.a, joint.arm_a), on_b = place(joint.b, joint.arm_b);
     if (is_point(joint.a)) at_point[joint.a].emplace_back(joint.b, on_b);
@@ -104,7 +98,7 @@ void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
   exclude_near(rod, first_body, ways);
   exclude_overlapping(rod, first_body, ways);
   for (int s = first_body; s < first_body + rod.segment_count(); ++s) {
-    std::vector<int>& excluded = excluded_[static_cast<std::size_t>(s)];
+    std::vector<int>& excluded = excluded_[at(s)];
     std::sort(excluded.begin(), excluded.end());
     excluded.erase(std::unique(excluded.begin(), excluded.end()), excluded.end());
   }
@@ -115,13 +109,13 @@ void ContactBodies::exclude_near(const Rod& rod, int first_body, JointWays& ways
   double widest = 0;
   for (const Segment& segment : rod.segments) widest = std::max(widest, segment.radius_m);
   for (int start = 0; start < rod.segment_count(); ++start) {
-    const double radius = rod.segments[static_cast<std::size_t>(start)].radius_m;
+    const double radius = rod.segments[at(start)].radius_m;
     const auto exclude = [&](int joint, const JointWays::Way& way) {
-      const Joint& through = rod.joints[static_cast<std::size_t>(joint)];
+      const Joint& through = rod.joints[at(joint)];
       for (const int segment : {through.a, through.b}) {
-        const double touching = radius + rod.segments[static_cast<std::size_t>(segment)].radius_m;
+        const double touching = radius + rod.segments[at(segment)].radius_m;
         if (segment > start && way.length_m < half_pi * touching)
-          excluded_[static_cast<std::size_t>(first_body + start)].push_back(first_body + segment);
+          excluded_[at(first_body + start)].push_back(first_body + segment);
       }
     };
     ways.from(
@@ -136,12 +130,10 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Jo
   struct Meet {
     int a, b;
     Vector3 arm_a, arm_b;
-    RestPose pose;
+    Pose pose;
   };
-  const auto segment = [&rod](int i) -> const Segment& { return rod.segments[static_cast<std::size_t>(i)]; };
-  const auto joint = [&rod](const Meeting& at) -> const Joint& {
-    return rod.joints[static_cast<std::size_t>(at.joint)];
-  };
+  const auto segment = [&rod](int i) -> const Segment& { return rod.segments[at(i)]; };
+  const auto joint = [&rod](const Meeting& of) -> const Joint& { return rod.joints[at(of.joint)]; };
   const auto beside = [](const Vector3& arm, const Vector3& other, double length) {
     return (arm - other).norm() <= 1e-9 * length;
   };
@@ -155,7 +147,7 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Jo
     if (is_point || apart >= a.radius_m + b.radius_m) return;
     const auto [low, high] = std::minmax(pair.a, pair.b);
     if (!known.insert(static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high)).second) return;
-    excluded_[static_cast<std::size_t>(first_body + low)].push_back(first_body + high);
+    excluded_[at(first_body + low)].push_back(first_body + high);
     open.push_back(pair);
   };
   /// The segment on the other side of a joint of `from`.
@@ -174,11 +166,11 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Jo
       }
     }
   /// Calls visit(next, its arm, its rest pose) beyond the far end of b; a point between them is passed.
-  const auto outwards = [&](int b, const Vector3& arm_b, const RestPose& pose, const auto& visit) {
+  const auto outwards = [&](int b, const Vector3& arm_b, const Pose& pose, const auto& visit) {
     for (const Meeting& at : ways.joints_of(b)) {
       if (beside(at.arm, arm_b, segment(b).length_m)) continue;
       const auto [next, arm] = across(b, at);
-      const RestPose there = beyond(joint(at), b, pose);
+      const Pose there = beyond(joint(at), b, pose);
       if (segment(next).length_m > 0) {
         visit(next, arm, there);
         continue;
@@ -193,10 +185,10 @@ void ContactBodies::exclude_overlapping(const Rod& rod, int first_body, const Jo
   while (!open.empty()) {
     const Meet pair = open.back();
     open.pop_back();
-    outwards(pair.b, pair.arm_b, pair.pose, [&](int next, const Vector3& arm, const RestPose& pose) {
+    outwards(pair.b, pair.arm_b, pair.pose, [&](int next, const Vector3& arm, const Pose& pose) {
       add({pair.a, next, pair.arm_a, arm, pose});
     });
-    outwards(pair.a, pair.arm_a, {}, [&](int next, const Vector3& arm, const RestPose& pose) {
+    outwards(pair.a, pair.arm_a, {}, [&](int next, const Vector3& arm, const Pose& pose) {
       add({next, pair.b, arm, pair.arm_b, relative(pose, pair.pose)});
     });
   }
@@ -207,7 +199,7 @@ bool ContactBodies::matter(int a, int b) const {
   if (!one.is_free && !other.is_free) return false;
   if (one.radius == 0 || other.radius == 0) return false;
   if (one.rod < 0) return true;
-  const std::vector<int>& excluded = excluded_[static_cast<std::size_t>(a)];
+  const std::vector<int>& excluded = excluded_[at(a)];
   return !std::binary_search(excluded.begin(), excluded.end(), b);
 }
 

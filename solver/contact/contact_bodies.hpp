@@ -32,7 +32,7 @@ class ContactBodies {
   explicit ContactBodies(const Scene& scene);
 
   int count() const { return static_cast<int>(bodies_.size()); }
-  const Body& body(int i) const { return bodies_[static_cast<std::size_t>(i)]; }
+  const Body& body(int i) const { return bodies_[at(i)]; }
 
   /// The reference length of a contact's motions; the radius of `a` if b is a half-space, below 0.
   double smaller_radius(int a, int b) const {
@@ -48,7 +48,7 @@ class ContactBodies {
     int body;  ///< the next segment
     int into;  ///< -1 or 1
   };
-  const std::vector<Next>& next(int i) const { return next_[static_cast<std::size_t>(i)]; }
+  const std::vector<Next>& next(int i) const { return next_[at(i)]; }
 
   /// Axes in the current state of the scene, one for each body, with obstacles at `time_s`.
   void place(const Scene& scene, double time_s, std::vector<CapsuleAxis>& axes) const;
@@ -60,7 +60,7 @@ class ContactBodies {
 
   /// Velocity of an obstacle [m/s].
   const Vector3& velocity(int obstacle) const {
-    return obstacles_[static_cast<std::size_t>(obstacle) - (bodies_.size() - obstacles_.size())].velocity;
+    return obstacles_[at(obstacle) - (bodies_.size() - obstacles_.size())].velocity;
   }
 
  private:

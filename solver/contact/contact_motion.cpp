@@ -70,9 +70,9 @@ Lane8 product(const Block6& block, const Lane8& v) {
 ContactMotion::ContactMotion(Scene& scene, const ContactBodies& bodies)
     : scene_(scene),
       bodies_(bodies),
-      motion_(static_cast<std::size_t>(bodies.count()), Lane8{}),
-      settled_(static_cast<std::size_t>(bodies.count()), Lane8{}),
-      wrench_(static_cast<std::size_t>(bodies.count()), Lane8{}) {
+      motion_(at(bodies.count()), Lane8{}),
+      settled_(at(bodies.count()), Lane8{}),
+      wrench_(at(bodies.count()), Lane8{}) {
   int first_body = 0;
   for (const Rod& rod : scene.rods) {
     rods_.push_back(
@@ -103,8 +103,8 @@ void ContactMotion::touch(int body) {
   if (body < 0) return;
   const Body& of = bodies_.body(body);
   if (!of.is_free) return;
-  Coupled& coupled = rods_[static_cast<std::size_t>(of.rod)];
-  const Rod& rod = scene_.rods[static_cast<std::size_t>(of.rod)];
+  Coupled& coupled = rods_[at(of.rod)];
+  const Rod& rod = scene_.rods[at(of.rod)];
   if (!coupled.response) coupled.response.emplace(rod);
   if (!coupled.assembled) {
     coupled.response->assemble(rod, rod.constraint_dt);
@@ -120,26 +120,23 @@ void ContactMotion::update() {
     if (rods_[r].touched) rods_[r].delassus.update(scene_.rods[r], *rods_[r].response);
 }
 
-const Segment& ContactMotion::segment(const Body& of) const {
-  return scene_.rods[static_cast<std::size_t>(of.rod)].segments[static_cast<std::size_t>(of.segment)];
-}
+const Segment& ContactMotion::segment(const Body& of) const { return scene_.rods[at(of.rod)].segments[at(of.segment)]; }
 
 Lane8 ContactMotion::free_motion(int body, const Lane8& wrench) const {
   const Segment& of = segment(bodies_.body(body));
   const Vector3 force(wrench[0], wrench[1], wrench[2]), moment(wrench[3], wrench[4], wrench[5]);
-  return joined(of.inverse_mass * force, turn(of, moment, (*axes_)[static_cast<std::size_t>(body)]));
+  return joined(of.inverse_mass * force, turn(of, moment, (*axes_)[at(body)]));
 }
 
 int ContactMotion::group(int body) const {
   if (body < 0 || !bodies_.body(body).is_free) return -1;
   const int rod = bodies_.body(body).rod;
-  return responds_ && !rods_[static_cast<std::size_t>(rod)].delassus.is_full() ? rod
-                                                                               : static_cast<int>(rods_.size()) + body;
+  return responds_ && !rods_[at(rod)].delassus.is_full() ? rod : static_cast<int>(rods_.size()) + body;
 }
 
 Matrix3 ContactMotion::coupling(const BodyPoint& of, const BodyPoint& by) const {
   const Body &moved = bodies_.body(of.body), &pushed = bodies_.body(by.body);
-  const Coupled& coupled = rods_[static_cast<std::size_t>(moved.rod)];
+  const Coupled& coupled = rods_[at(moved.rod)];
   const bool is_free = !responds_ || coupled.delassus.is_full();
   Matrix3 w;
   for (int c = 0; c < 3; ++c) {
@@ -162,47 +159,47 @@ Matrix3 ContactMotion::mobility(const BodyPoint& a, const BodyPoint& b) const {
   return w - cross - cross.transpose();
 }
 
-void ContactMotion::push(const BodyPoint& at, const Vector3& impulse) {
-  if (at.body < 0) return;
-  const Body& of = bodies_.body(at.body);
+void ContactMotion::push(const BodyPoint& point, const Vector3& impulse) {
+  if (point.body < 0) return;
+  const Body& of = bodies_.body(point.body);
   if (!of.is_free) return;
-  Coupled& coupled = rods_[static_cast<std::size_t>(of.rod)];
+  Coupled& coupled = rods_[at(of.rod)];
   const Vector3 own = coupled.share * impulse;
-  const Lane8 wrench = joined(own, at.arm.cross(own));
+  const Lane8 wrench = joined(own, point.arm.cross(own));
   if (responds_) {
-    wrench_[static_cast<std::size_t>(at.body)] += wrench;
+    wrench_[at(point.body)] += wrench;
     coupled.pushed = true;
   } else {
-    motion_[static_cast<std::size_t>(at.body)] += free_motion(at.body, wrench);
+    motion_[at(point.body)] += free_motion(point.body, wrench);
   }
 }
 
-Vector3 ContactMotion::velocity(const BodyPoint& at) const {
-  const Coupled& rod = coupled(at.body);
-  const auto s = static_cast<std::size_t>(bodies_.body(at.body).segment);
-  const Rod& now = scene_.rods[static_cast<std::size_t>(bodies_.body(at.body).rod)];
+Vector3 ContactMotion::velocity(const BodyPoint& point) const {
+  const Coupled& rod = coupled(point.body);
+  const auto s = at(bodies_.body(point.body).segment);
+  const Rod& now = scene_.rods[at(bodies_.body(point.body).rod)];
   const Vector3 turn = rotation(now.orientation[s], rod.past.orientation[s]);
-  return (now.position[s] - rod.past.position[s] + turn.cross(at.arm)) / rod.past.h;
+  return (now.position[s] - rod.past.position[s] + turn.cross(point.arm)) / rod.past.h;
 }
 
-Vector3 ContactMotion::velocity_before(const BodyPoint& at) const {
-  const auto s = static_cast<std::size_t>(bodies_.body(at.body).segment);
-  const Rod& rod = scene_.rods[static_cast<std::size_t>(bodies_.body(at.body).rod)];
-  return rod.velocity[s] + rod.angular_velocity[s].cross(at.arm);
+Vector3 ContactMotion::velocity_before(const BodyPoint& point) const {
+  const auto s = at(bodies_.body(point.body).segment);
+  const Rod& rod = scene_.rods[at(bodies_.body(point.body).rod)];
+  return rod.velocity[s] + rod.angular_velocity[s].cross(point.arm);
 }
 
 // The balance measures a turn from q*. About one axis, tan(x - y) = (tan x - tan y) / (1 + tan x tan y).
 Vector3 ContactMotion::turning(int segment, const Vector3& moment) const {
-  const auto s = static_cast<std::size_t>(bodies_.body(segment).segment);
-  const Rod& now = scene_.rods[static_cast<std::size_t>(bodies_.body(segment).rod)];
+  const auto s = at(bodies_.body(segment).segment);
+  const Rod& now = scene_.rods[at(bodies_.body(segment).rod)];
   const Quaternion& past = coupled(segment).past.orientation[s];
   const Vector3 turn = rotation(now.orientation[s], past), free = rotation(now.free_orientation[s], past);
   return moment - turn * (free.dot(moment) / (4 + free.dot(turn)));
 }
 
-Vector3 ContactMotion::of(const BodyPoint& at) const {
-  if (at.body < 0) return Vector3::Zero();
-  return at_point(motion_[static_cast<std::size_t>(at.body)], at.arm);
+Vector3 ContactMotion::of(const BodyPoint& point) const {
+  if (point.body < 0) return Vector3::Zero();
+  return at_point(motion_[at(point.body)], point.arm);
 }
 
 bool ContactMotion::needs_settling() const {
@@ -243,8 +240,8 @@ void ContactMotion::apply(bool keeps_balance) {
     coupled.response->forget_multipliers();
     const auto move = [&] {
       for (int s = 0; s < rod.segment_count(); ++s) {
-        const auto body = static_cast<std::size_t>(coupled.first_body + s);
-        move_in_world(rod, coupled.past, static_cast<std::size_t>(s), settled_[body]);
+        const auto body = at(coupled.first_body + s);
+        move_in_world(rod, coupled.past, at(s), settled_[body]);
         motion_[body] = settled_[body] = Lane8{};
       }
     };

@@ -2,7 +2,7 @@
 //
 // While contacts are only measured (measure()), a push moves a segment at once, as if it were free. While rods respond
 // (respond()), pushes move them at the next settle(), with the response of their joints (rod_response.hpp). Meanwhile
-// coupling() tells how segments move by impulses on others: in rods with a Delassus operator (delassus_operator.hpp) as
+// coupling() tells how segments move by impulses on others: in rods with a Delassus operator (rod_response.hpp) as
 // they will, in others as if they were free. At the end every segment moves once, by dx and dtheta, and
 // lambda += dlambda. Obstacles and static segments do not move.
 //
@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "solver/contact/contact_bodies.hpp"
-#include "solver/contact/delassus_operator.hpp"
+#include "solver/contact/rod_response.hpp"
 
 namespace rodsweep {
 
@@ -46,13 +46,13 @@ class ContactMotion {
   /// h of the rod of a segment.
   double h(int segment) const { return coupled(segment).past.h; }
   /// The velocity of a segment's material at a point, in its present pose [m/s].
-  Vector3 velocity(const BodyPoint& at) const;
-  Vector3 velocity_before(const BodyPoint& at) const;  ///< at the start of the step
+  Vector3 velocity(const BodyPoint& point) const;
+  Vector3 velocity_before(const BodyPoint& point) const;  ///< at the start of the step
   /// The part of an impulse's moment that turns a segment in the balance of momentum as turned() does.
   Vector3 turning(int segment, const Vector3& moment) const;
 
   /// What a rod gets of an impulse.
-  double share(int rod) const { return rods_[static_cast<std::size_t>(rod)].share; }
+  double share(int rod) const { return rods_[at(rod)].share; }
 
   /// From now on all segments are free, until respond(). The axes must outlive the iteration.
   void measure(const std::vector<CapsuleAxis>& axes) { axes_ = &axes, responds_ = false; }
@@ -73,10 +73,10 @@ class ContactMotion {
   int group(int body) const;
 
   /// An impulse at a body's point.
-  void push(const BodyPoint& at, const Vector3& impulse);
+  void push(const BodyPoint& point, const Vector3& impulse);
 
   /// The motion of a body's point.
-  Vector3 of(const BodyPoint& at) const;
+  Vector3 of(const BodyPoint& point) const;
 
   /// Whether a touched rod has no Delassus operator.
   bool needs_settling() const;
@@ -101,7 +101,7 @@ class ContactMotion {
     bool pushed = false;     ///< since the last settle()
   };
   const Segment& segment(const Body& of) const;
-  const Coupled& coupled(int segment) const { return rods_[static_cast<std::size_t>(bodies_.body(segment).rod)]; }
+  const Coupled& coupled(int segment) const { return rods_[at(bodies_.body(segment).rod)]; }
   Lane8 free_motion(int body, const Lane8& wrench) const;
 
   Scene& scene_;

@@ -89,7 +89,7 @@ class ContactProjection {
   };
   /// A point of an active contact, and its block column of G, in the contact's frame.
   struct Point {
-    const BodyPoint* at;
+    const BodyPoint* place;
     std::size_t active;  ///< its contact
     int group;           ///< ContactMotion::group
     std::size_t begin;   ///< of its group in motions_
@@ -98,20 +98,16 @@ class ContactProjection {
     std::size_t column;  ///< the first of its three columns in coupling_, each with the rows of the group
 
     /// Of row r of another point's motion, by component c of an impulse here.
-    std::size_t entry(const Point& of, int r, int c) const {
-      return column + static_cast<std::size_t>(c) * rows + of.motion + static_cast<std::size_t>(r);
-    }
+    std::size_t entry(const Point& of, int r, int c) const { return column + at(c) * rows + of.motion + at(r); }
   };
   void linearise();
-  Point& point(int i) { return points_[static_cast<std::size_t>(i)]; }
-  const Point& point(int i) const { return points_[static_cast<std::size_t>(i)]; }
+  Point& point(int i) { return points_[at(i)]; }
+  const Point& point(int i) const { return points_[at(i)]; }
   Vector3 motion(const Active& active) const;
   void push(int point, const Vector3& impulse);
   void place_points();
-  Vector3 slip(std::size_t contact) const;
-  Vector3 velocity(const BodyPoint& at) const;
-  Vector3 velocity_before(const BodyPoint& at) const;  ///< the step
-  double shared_h(const Linear& at) const;
+  using Velocity = Vector3 (ContactMotion::*)(const BodyPoint&) const;
+  Vector3 slip(const Linear& at, Velocity velocity = &ContactMotion::velocity) const;
   double separation_short_of_rebound(std::size_t contact);
   double friction(const Contact& contact) const;
   double residual();
@@ -121,7 +117,6 @@ class ContactProjection {
   double sweep();
   double relax(Active& active);
   void change(Active& active, const Vector3& impulse);
-  void keep_impulses();
   void settle();
   void find_motions();
   void restart(double moved);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 
 #include "solver/rod/joint_kernels.hpp"
 
@@ -36,6 +37,13 @@ Eigen::Matrix<double, 6, 6> dense(const JointSide& side) {
   return j;
 }
 
+Block6 transposed(const Block6& block) {
+  Block6 out{};
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 6; ++c) out.column[r][c] = block.column[c][r];
+  return out;
+}
+
 }  // namespace
 
 RodResponse::RodResponse(const Rod& rod)
@@ -44,15 +52,9 @@ RodResponse::RodResponse(const Rod& rod)
       change_(6 * rod.joint_count()),
       multipliers_(6 * rod.joint_count()),
       own_(rod.segments.size()),
-      sides_(rod.segments.size()),
+      sides_(joints_by_segment(rod)),
       orientation_(rod.segments.size()),
-      turns_(rod.segments.size()) {
-  for (int k = 0; k < rod.joint_count(); ++k) {
-    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
-    sides_[static_cast<std::size_t>(joint.a)].push_back({k, false});
-    sides_[static_cast<std::size_t>(joint.b)].push_back({k, true});
-  }
-}
+      turns_(rod.segments.size()) {}
 
 void RodResponse::assemble(const Rod& rod, double dt) {
   multipliers_.setZero();
@@ -75,7 +77,7 @@ bool RodResponse::is_stale(const Rod& rod) const {
 }
 
 Lane8 RodResponse::free_motion(const Rod& rod, int segment, const Lane8& wrench) const {
-  const auto s = static_cast<std::size_t>(segment);
+  const auto s = at(segment);
   return turned(turns_[s].to_world, motion(rod.segments[s], turned(turns_[s].to_own, wrench)));
 }
 
@@ -84,8 +86,7 @@ void RodResponse::respond(const Rod& rod, Lane8* motion) {
   for (std::size_t s = 0; s < own_.size(); ++s) own_[s] = turned(turns_[s].to_own, motion[s]);
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Joint& joint = rod.joints[k];
-    store6(change_.data() + 6 * k, constraint_change(linearization.joints[k], own_[static_cast<std::size_t>(joint.a)],
-                                                     own_[static_cast<std::size_t>(joint.b)]));
+    store6(change_.data() + 6 * k, constraint_change(linearization.joints[k], own_[at(joint.a)], own_[at(joint.b)]));
   }
   factor_.substitute(change_);
   multipliers_ -= change_;
@@ -95,7 +96,7 @@ void RodResponse::respond(const Rod& rod, Lane8* motion) {
 
 void RodResponse::load(const Rod& rod, int segment) {
   loaded_ = segment;
-  const auto s = static_cast<std::size_t>(segment);
+  const auto s = at(segment);
   const Matrix3 turn = orientation_[s].toRotationMatrix();
   if (CondensedFactor* factor = factor_.condensed_factor()) {
     Lane8 force[6]{};  // R^T
@@ -109,25 +110,24 @@ void RodResponse::load(const Rod& rod, int segment) {
     const Lane8 column = motion(rod.segments[s], turned(turns_[s].to_own, unit_lane[c]));
     for (int r = 0; r < 6; ++r) free(r, c) = column[r];
   }
-  for (const Side& side : sides_[s]) {
-    const Eigen::Matrix<double, 6, 6> block =
-        dense({system_.linearization().joints[static_cast<std::size_t>(side.joint)], side.is_b}) * free;
+  for (const JointEnd& side : sides_[s]) {
+    const Eigen::Matrix<double, 6, 6> block = dense({system_.linearization().joints[at(side.joint)], side.is_b}) * free;
     for (int r = 0; r < 6; ++r)
-      for (int c = 0; c < 6; ++c) columns_[static_cast<std::size_t>(6 * side.joint + r)][c] += block(r, c);
+      for (int c = 0; c < 6; ++c) columns_[at(6 * side.joint + r)][c] += block(r, c);
   }
   factor_.whole_factor()->substitute(columns_);
 }
 
 Block6 RodResponse::compliance(const Rod& rod, int of) {
-  const auto s = static_cast<std::size_t>(of);
+  const auto s = at(of);
   const Segment& segment = rod.segments[s];
   const Matrix3 turn = orientation_[s].toRotationMatrix();
   Lane8 row[6]{};  // of H R^T
   if (CondensedFactor* factor = factor_.condensed_factor()) {
     factor->motion_of(of, row);
   } else {
-    for (const Side& side : sides_[s]) {
-      const JointSide jacobian(system_.linearization().joints[static_cast<std::size_t>(side.joint)], side.is_b);
+    for (const JointEnd& side : sides_[s]) {
+      const JointSide jacobian(system_.linearization().joints[at(side.joint)], side.is_b);
       const Lane8* const x = columns_.data() + 6 * static_cast<std::ptrdiff_t>(side.joint);
       for (int j = 0; j < 3; ++j) {
         for (int r = 0; r < 3; ++r) row[j] -= entry(jacobian.shift[j], r) * x[r];
@@ -150,6 +150,46 @@ Block6 RodResponse::compliance(const Rod& rod, int of) {
       for (int c = 0; c < 6; ++c) out.column[c][3 * half + r] = sum[c];
     }
   return out;
+}
+
+void DelassusOperator::clear() {
+  for (const int segment : touched_) place_[at(segment)] = -1;
+  touched_.clear();
+  known_ = 0;
+  is_full_ = false;
+}
+
+void DelassusOperator::touch(int segment) {
+  if (place_[at(segment)] >= 0) return;
+  if (touched_.size() == most_touched_) {
+    is_full_ = true;
+    return;
+  }
+  place_[at(segment)] = static_cast<int>(touched_.size());
+  touched_.push_back(segment);
+}
+
+void DelassusOperator::grow() {
+  if (touched_.size() <= stride_) return;
+  const std::size_t stride = std::max(touched_.size(), stride_ + stride_ / 2);
+  grown_.resize(stride * stride);
+  for (std::size_t by = 0; by < known_; ++by)
+    std::copy_n(blocks_.data() + by * stride_, known_, grown_.data() + by * stride);
+  std::swap(blocks_, grown_);
+  stride_ = stride;
+}
+
+void DelassusOperator::update(const Rod& rod, RodResponse& response) {
+  if (is_full_) return;
+  grow();
+  for (std::size_t by = known_; by < touched_.size(); ++by) {
+    response.load(rod, touched_[by]);
+    for (std::size_t of = 0; of < touched_.size(); ++of) {
+      blocks_[by * stride_ + of] = response.compliance(rod, touched_[of]);
+      if (of < known_) blocks_[of * stride_ + by] = transposed(blocks_[by * stride_ + of]);
+    }
+  }
+  known_ = touched_.size();
 }
 
 }  // namespace rodsweep

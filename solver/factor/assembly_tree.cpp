@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "solver/factor/elimination_order.hpp"
+
 namespace rodsweep {
 namespace {
 
@@ -148,7 +150,7 @@ AssemblyTree::AssemblyTree(const EliminationTree& tree) {
     children.insert(children.end(), children_of[at(s)].begin(), children_of[at(s)].end());
     node.child_end = static_cast<int>(children.size());
     node.stack = depth[at(s)] % 2;
-    const auto stack = static_cast<std::size_t>(node.stack);
+    const auto stack = at(node.stack);
     node.update = top[stack];
     top[stack] += node.update_size();
     stack_size[stack] = std::max(stack_size[stack], top[stack]);
@@ -158,8 +160,8 @@ AssemblyTree::AssemblyTree(const EliminationTree& tree) {
 }
 
 void AssemblyTree::find_rows(const BlockMatrix& pattern) {
-  std::vector<int> column_of(row.size()), seen_by(row.size(), -1), place(row.size());
-  for (std::size_t k = 0; k < row.size(); ++k) column_of[at(row[k])] = static_cast<int>(k);
+  const std::vector<int> column_of = inverse(row);
+  std::vector<int> seen_by(row.size(), -1), place(row.size());
   for (int s = 0; s < static_cast<int>(supernodes.size()); ++s) {
     Supernode& node = supernodes[at(s)];
     const int end = node.first + node.columns;

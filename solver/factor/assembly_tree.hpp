@@ -26,9 +26,7 @@ inline constexpr int tile_blocks = 4, tile_rows = 6 * tile_blocks;
 inline constexpr int tiles_of(int block_rows) { return (block_rows + tile_blocks - 1) / tile_blocks; }
 
 /// Offset of tile t of a front's U. It has the columns of tiles 0 .. t.
-inline constexpr std::size_t update_tile(int t) {
-  return static_cast<std::size_t>(tile_rows) * tile_rows * (static_cast<std::size_t>(t) * (t + 1) / 2);
-}
+inline constexpr std::size_t update_tile(int t) { return at(tile_rows) * tile_rows * (at(t) * (t + 1) / 2); }
 
 struct Supernode {
   int first, columns;          ///< block columns of L
@@ -44,10 +42,10 @@ struct Supernode {
   /// Offset in the panel of a block row of the front, P's first.
   std::size_t block_offset(int local) const {
     const int of = local < columns ? local : local - columns + tile_blocks * pivot_tiles();
-    return tile_size() * static_cast<std::size_t>(of / tile_blocks) + static_cast<std::size_t>(6 * (of % tile_blocks));
+    return tile_size() * at(of / tile_blocks) + at(6 * (of % tile_blocks));
   }
-  std::size_t tile_size() const { return static_cast<std::size_t>(6 * tile_rows) * static_cast<std::size_t>(columns); }
-  std::size_t panel_size() const { return tile_size() * static_cast<std::size_t>(pivot_tiles() + row_tiles()); }
+  std::size_t tile_size() const { return at(6 * tile_rows) * at(columns); }
+  std::size_t panel_size() const { return tile_size() * at(pivot_tiles() + row_tiles()); }
   std::size_t update_size() const { return update_tile(row_tiles()); }
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solver/factor/elimination_order.hpp"
 #include "solver/linear/block_kernels.hpp"
 
 namespace rodsweep {
@@ -46,32 +47,29 @@ inline bool is_zero(const Lane8 (&b)[6]) {
 
 BlockElimination::BlockElimination(const BlockMatrix& pattern, const std::vector<int>& order) {
   const std::size_t n = order.size();
-  std::vector<int> position(n);
-  for (std::size_t i = 0; i < n; ++i) position[static_cast<std::size_t>(order[i])] = static_cast<int>(n - 1 - i);
+  const std::vector<int> rows(order.rbegin(), order.rend()), position = inverse(rows);
 
   // The later neighbours of every column: those in A, and those of the columns whose first later neighbour it is.
   std::vector<std::vector<int>> children(n);
   std::vector<int> seen_by(n, -1), later;
   for (std::size_t i = 0; i < n; ++i) {
-    const int row = order[n - 1 - i];
+    const int row = rows[i];
     later.clear();
     const auto see = [&](int j) {
-      if (j > static_cast<int>(i) &&
-          std::exchange(seen_by[static_cast<std::size_t>(j)], static_cast<int>(i)) != static_cast<int>(i))
+      if (j > static_cast<int>(i) && std::exchange(seen_by[at(j)], static_cast<int>(i)) != static_cast<int>(i))
         later.push_back(j);
     };
-    for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k)
-      see(position[static_cast<std::size_t>(pattern.column(k))]);
+    for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k) see(position[at(pattern.column(k))]);
     for (const int child : children[i]) {
-      const Column& of = columns_[static_cast<std::size_t>(child)];
-      for (int q = of.off_begin; q < of.off_end; ++q) see(off_[static_cast<std::size_t>(q)].position);
+      const Column& of = columns_[at(child)];
+      for (int q = of.off_begin; q < of.off_end; ++q) see(off_[at(q)].position);
     }
     std::sort(later.begin(), later.end());
-    if (!later.empty()) children[static_cast<std::size_t>(later.front())].push_back(static_cast<int>(i));
+    if (!later.empty()) children[at(later.front())].push_back(static_cast<int>(i));
     const int begin = static_cast<int>(off_.size());
     for (const int p : later) {
       // Row r of B = A_kp is column r of A_pk.
-      const int source = pattern.find(order[n - 1 - static_cast<std::size_t>(p)], row);
+      const int source = pattern.find(rows[at(p)], row);
       fill_in_ += source < 0;
       off_.push_back({p, source, false, false});
     }
@@ -88,21 +86,17 @@ void BlockElimination::list_updates() {
   for (Column& column : columns_) {
     const int count = column.off_end - column.off_begin;
     column.update_begin = static_cast<int>(updates_.size());
-    updates_.resize(updates_.size() +
-                    static_cast<std::size_t>(count) * static_cast<std::size_t>(std::max(0, count - 1)) / 2);
+    updates_.resize(updates_.size() + at(count) * at(std::max(0, count - 1)) / 2);
     for (int p = 0; p < count; ++p) {
-      Off& off = off_[static_cast<std::size_t>(column.off_begin + p)];
-      Column& later = columns_[static_cast<std::size_t>(off.position)];
+      Off& off = off_[at(column.off_begin + p)];
+      Column& later = columns_[at(off.position)];
       off.first = !later.updated;
       later.updated = true;
-      for (int e = later.off_begin; e < later.off_end; ++e)
-        entry_of[static_cast<std::size_t>(off_[static_cast<std::size_t>(e)].position)] = e;
+      for (int e = later.off_begin; e < later.off_end; ++e) entry_of[at(off_[at(e)].position)] = e;
       for (int q = p + 1; q < count; ++q) {
-        const int entry =
-            entry_of[static_cast<std::size_t>(off_[static_cast<std::size_t>(column.off_begin + q)].position)];
-        updates_[static_cast<std::size_t>(column.update_begin + q * (q - 1) / 2 + p)] = {
-            entry, !off_[static_cast<std::size_t>(entry)].updated};
-        off_[static_cast<std::size_t>(entry)].updated = true;
+        const int entry = entry_of[at(off_[at(column.off_begin + q)].position)];
+        updates_[at(column.update_begin + q * (q - 1) / 2 + p)] = {entry, !off_[at(entry)].updated};
+        off_[at(entry)].updated = true;
       }
     }
   }
@@ -116,8 +110,8 @@ SolveOutcome BlockElimination::solve(const BlockMatrix& a, const VectorX& b, Vec
       Lane8 terms[6]{};
       Lane8 keep = Lane8{1, 1, 1, 1, 1, 1, 1, 0};  // lane 6 of every X_p holds y: add it once
       for (int p = column.off_begin; p < column.off_end; ++p) {
-        const Block6& off = off_work_[static_cast<std::size_t>(p)];
-        const Lane8 known = keep * solution_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)];
+        const Block6& off = off_work_[at(p)];
+        const Lane8 known = keep * solution_[at(off_[at(p)].position)];
         for (int r = 0; r < 6; ++r) terms[r] += off.column[r] * known;
         keep = Lane8{1, 1, 1, 1, 1, 1, 0, 0};
       }
@@ -141,17 +135,14 @@ void BlockElimination::substitute(VectorX& x) {
     const Column& column = columns_[i];
     const Lane8 b = solution_[i];
     for (int p = column.off_begin; p < column.off_end; ++p)
-      solution_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)] -=
-          combined(off_work_[static_cast<std::size_t>(p)], b);
+      solution_[at(off_[at(p)].position)] -= combined(off_work_[at(p)], b);
     solution_[i] = combined(inverse_[i], b);
   }
   for (std::size_t i = columns_.size(); i-- > 0;) {
     const Column& column = columns_[i];
     Lane8 terms[6]{};
     for (int p = column.off_begin; p < column.off_end; ++p)
-      for (int r = 0; r < 6; ++r)
-        terms[r] += off_work_[static_cast<std::size_t>(p)].column[r] *
-                    solution_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)];
+      for (int r = 0; r < 6; ++r) terms[r] += off_work_[at(p)].column[r] * solution_[at(off_[at(p)].position)];
     if (column.off_begin < column.off_end) solution_[i] -= sum_lanes(terms);
     store6(x.data() + 6 * column.row, solution_[i]);
   }
@@ -159,9 +150,7 @@ void BlockElimination::substitute(VectorX& x) {
 
 void BlockElimination::substitute(std::vector<Lane8>& x) {
   const auto rows_of = [&x](const Column& column) { return x.data() + 6 * static_cast<std::ptrdiff_t>(column.row); };
-  const auto later = [&](int p) {
-    return rows_of(columns_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)]);
-  };
+  const auto later = [&](int p) { return rows_of(columns_[at(off_[at(p)].position)]); };
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const Column& column = columns_[i];
     Lane8 b[6];
@@ -169,7 +158,7 @@ void BlockElimination::substitute(std::vector<Lane8>& x) {
     if (is_zero(b)) continue;  // few rows are loaded
     for (int p = column.off_begin; p < column.off_end; ++p) {
       Lane8 product[6]{};
-      add_transposed_product(off_work_[static_cast<std::size_t>(p)], b, product);
+      add_transposed_product(off_work_[at(p)], b, product);
       for (int r = 0; r < 6; ++r) later(p)[r] -= product[r];
     }
     Lane8 solved[6]{};
@@ -179,8 +168,7 @@ void BlockElimination::substitute(std::vector<Lane8>& x) {
   for (std::size_t i = columns_.size(); i-- > 0;) {
     const Column& column = columns_[i];
     Lane8 known[6]{};
-    for (int p = column.off_begin; p < column.off_end; ++p)
-      add_product(off_work_[static_cast<std::size_t>(p)], later(p), known);
+    for (int p = column.off_begin; p < column.off_end; ++p) add_product(off_work_[at(p)], later(p), known);
     for (int r = 0; r < 6; ++r) rows_of(column)[r] -= known[r];
   }
 }
@@ -190,7 +178,7 @@ bool BlockElimination::eliminate(const BlockMatrix& a, const double* b) {
   bool positive = true;
   const auto block_of = [&](int source) -> const Block6& {
     static constexpr Block6 zero{};
-    return source < 0 ? zero : a.blocks[static_cast<std::size_t>(source)];
+    return source < 0 ? zero : a.blocks[at(source)];
   };
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const Column& column = columns_[i];
@@ -207,14 +195,14 @@ bool BlockElimination::eliminate(const BlockMatrix& a, const double* b) {
 
     const Update* update = updates_.data() + column.update_begin;
     for (int q = column.off_begin; q < column.off_end; ++q) {
-      const Off& off = off_[static_cast<std::size_t>(q)];
-      Block6& x = off_work_[static_cast<std::size_t>(q)];
+      const Off& off = off_[at(q)];
+      Block6& x = off_work_[at(q)];
       const Block6& before = off.updated ? x : block_of(off.source);
       // S^-1 is symmetric: B_p^T X_q = X_p^T B_q, and X_p is stored by now.
       for (int p = column.off_begin; p < q; ++p, ++update) {
-        Block6& target = off_work_[static_cast<std::size_t>(update->target)];
-        subtract_product(update->first ? block_of(off_[static_cast<std::size_t>(update->target)].source) : target,
-                         off_work_[static_cast<std::size_t>(p)], before, target);
+        Block6& target = off_work_[at(update->target)];
+        subtract_product(update->first ? block_of(off_[at(update->target)].source) : target, off_work_[at(p)], before,
+                         target);
       }
       Block6 w, u;
 #pragma GCC unroll 4
@@ -228,9 +216,9 @@ bool BlockElimination::eliminate(const BlockMatrix& a, const double* b) {
         backward(factor, rows);
         rows.store(x, p);
       }
-      const auto at = static_cast<std::size_t>(off.position);
-      Block6& diagonal = diagonal_work_[at];
-      subtract_product(off.first ? block_of(columns_[at].diagonal_source) : diagonal, w, u, diagonal);
+      const auto later = at(off.position);
+      Block6& diagonal = diagonal_work_[later];
+      subtract_product(off.first ? block_of(columns_[later].diagonal_source) : diagonal, w, u, diagonal);
     }
   }
   return positive;

@@ -20,21 +20,17 @@ std::variant<BlockElimination, MultifrontalFactor> factor_of(const BlockMatrix& 
 }  // namespace
 
 std::vector<int> root_to_leaf_order(const Rod& rod) {
-  std::vector<std::vector<int>> joints_of(rod.segments.size());
-  for (int k = 0; k < rod.joint_count(); ++k) {
-    joints_of[static_cast<std::size_t>(rod.joints[static_cast<std::size_t>(k)].a)].push_back(k);
-    joints_of[static_cast<std::size_t>(rod.joints[static_cast<std::size_t>(k)].b)].push_back(k);
-  }
+  const std::vector<std::vector<JointEnd>> joints_of = joints_by_segment(rod);
   std::vector<std::size_t> left(rod.segments.size());  // joints of a segment that are not eliminated
   for (std::size_t s = 0; s < left.size(); ++s) left[s] = joints_of[s].size();
   std::deque<int> free;  // joints that can be eliminated now
   std::vector<bool> seen(rod.joints.size(), false);
   const auto see = [&](int k) {
-    if (!seen[static_cast<std::size_t>(k)]) free.push_back(k);
-    seen[static_cast<std::size_t>(k)] = true;
+    if (!seen[at(k)]) free.push_back(k);
+    seen[at(k)] = true;
   };
   const auto see_all_of = [&](std::size_t s) {
-    for (const int k : joints_of[s]) see(k);
+    for (const JointEnd& end : joints_of[s]) see(end.joint);
   };
   for (std::size_t s = 0; s < left.size(); ++s)
     if (left[s] == 1 || rod.segments[s].is_static) see_all_of(s);
@@ -44,9 +40,9 @@ std::vector<int> root_to_leaf_order(const Rod& rod) {
       const int k = rod.joint_count() > most_in_cache ? free.back() : free.front();
       rod.joint_count() > most_in_cache ? free.pop_back() : free.pop_front();
       order.push_back(k);
-      const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+      const Joint& joint = rod.joints[at(k)];
       for (const int s : {joint.a, joint.b})
-        if (--left[static_cast<std::size_t>(s)] == 1) see_all_of(static_cast<std::size_t>(s));
+        if (--left[at(s)] == 1) see_all_of(at(s));
     }
   };
   eliminate_free();

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
+
+#include "solver/factor/elimination_order.hpp"
 
 namespace rodsweep {
 namespace {
@@ -12,13 +13,6 @@ namespace {
 constexpr double most_contrast = 1e6;                 ///< of compliances
 constexpr double accurate = 1e-12, rounding = 1e-15;  ///< shares of |b| and of a |d|
 constexpr double cost_of_joint = 12000;  ///< measured on lattices and nets, in flops of the fronts' kernels
-
-double largest_diagonal_entry(const BlockMatrix& a) {
-  double largest = 0;
-  for (int block_row = 0; block_row < a.block_rows(); ++block_row)
-    for (int row = 0; row < 6; ++row) largest = std::max(largest, a.diagonal_entry(block_row, row));
-  return largest;
-}
 
 }  // namespace
 
@@ -32,9 +26,7 @@ bool can_be_condensed(const Rod& rod) {
 }
 
 EliminationPlan plan_crossings(const Condensation& condensation) {
-  std::vector<int> in_order(at(condensation.matrix().block_rows()));
-  std::iota(in_order.begin(), in_order.end(), 0);
-  return plan_elimination(condensation.matrix(), in_order);
+  return plan_elimination(condensation.matrix(), given_order(condensation.matrix()));
 }
 
 double cost_of_condensing(const Rod& rod) { return cost_of_joint * rod.joint_count(); }

@@ -3,13 +3,25 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <numeric>
 
 namespace rodsweep {
 
+std::vector<int> given_order(const BlockMatrix& pattern) {
+  std::vector<int> order(at(pattern.block_rows()));
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+std::vector<int> inverse(const std::vector<int>& order) {
+  std::vector<int> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) place[at(order[i])] = static_cast<int>(i);
+  return place;
+}
+
 bool fills_in(const BlockMatrix& pattern, const std::vector<int>& order) {
-  std::vector<std::size_t> place(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) place[static_cast<std::size_t>(order[i])] = i;
-  const auto place_of = [&](int row) { return place[static_cast<std::size_t>(row)]; };
+  const std::vector<int> place = inverse(order);
+  const auto place_of = [&](int row) { return place[at(row)]; };
   std::vector<int> left;  // neighbours of a row that are eliminated after it
   for (const int row : order) {
     left.clear();
@@ -46,18 +58,18 @@ std::size_t append_part(const BlockMatrix& pattern, int first, std::vector<bool>
   const auto degree = [&](int row) { return pattern.row_end(row) - pattern.row_begin(row); };
   std::size_t level = order.size(), next_level = level + 1;
   order.push_back(first);
-  seen[static_cast<std::size_t>(first)] = true;
-  for (std::size_t at = level; at < order.size(); ++at) {
-    if (at == next_level) {
-      level = at;
+  seen[at(first)] = true;
+  for (std::size_t i = level; i < order.size(); ++i) {
+    if (i == next_level) {
+      level = i;
       next_level = order.size();
     }
     const auto found = static_cast<std::ptrdiff_t>(order.size());
-    const int row = order[at];
+    const int row = order[i];
     for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k) {
       const int column = pattern.column(k);
-      if (!seen[static_cast<std::size_t>(column)]) order.push_back(column);
-      seen[static_cast<std::size_t>(column)] = true;
+      if (!seen[at(column)]) order.push_back(column);
+      seen[at(column)] = true;
     }
     std::stable_sort(order.begin() + found, order.end(), [&](int a, int b) { return degree(a) < degree(b); });
   }
@@ -67,10 +79,10 @@ std::size_t append_part(const BlockMatrix& pattern, int first, std::vector<bool>
 }  // namespace
 
 std::vector<int> breadth_first_order(const BlockMatrix& pattern) {
-  std::vector<bool> seen(static_cast<std::size_t>(pattern.block_rows()), false);
+  std::vector<bool> seen(at(pattern.block_rows()), false);
   std::vector<int> order;
   for (int row = 0; row < pattern.block_rows(); ++row) {
-    if (seen[static_cast<std::size_t>(row)]) continue;
+    if (seen[at(row)]) continue;
     const std::size_t begin = order.size();
     int first = row;
     for (int tries = 0; tries < 3; ++tries) {  // from the far end of the last try, which is peripheral
@@ -78,7 +90,7 @@ std::vector<int> breadth_first_order(const BlockMatrix& pattern) {
       first = *std::min_element(order.begin() + static_cast<std::ptrdiff_t>(last), order.end(), [&](int a, int b) {
         return pattern.row_end(a) - pattern.row_begin(a) < pattern.row_end(b) - pattern.row_begin(b);
       });
-      for (std::size_t i = begin; i < order.size(); ++i) seen[static_cast<std::size_t>(order[i])] = false;
+      for (std::size_t i = begin; i < order.size(); ++i) seen[at(order[i])] = false;
       order.resize(begin);
     }
     append_part(pattern, first, seen, order);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "solver/factor/elimination_order.hpp"
-#include "solver/factor/nested_dissection.hpp"
 
 namespace rodsweep {
 namespace {

@@ -1,7 +1,7 @@
 // The cheapest factorisation of a matrix and its cost, before any memory is allocated.
 //
 // An order without fill-in is kept: chains and trees. Otherwise minimum degree (elimination_order.hpp) and nested
-// dissection (nested_dissection.hpp) are compared by the cost that the elimination tree gives (elimination_tree.hpp).
+// dissection are compared by the cost that the elimination tree gives (elimination_tree.hpp).
 // With little fill-in blocks are eliminated one by one in the order of minimum degree; dense fronts in the cheaper
 // order are used if they are expected to be faster.
 #pragma once

@@ -3,14 +3,10 @@
 #include <numeric>
 #include <utility>
 
+#include "solver/factor/elimination_order.hpp"
+
 namespace rodsweep {
 namespace {
-
-std::vector<int> inverse(const std::vector<int>& order) {
-  std::vector<int> place(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) place[at(order[i])] = static_cast<int>(i);
-  return place;
-}
 
 /// Parents of columns that are in the order of elimination.
 std::vector<int> parents(const BlockMatrix& pattern, const std::vector<int>& row, const std::vector<int>& place) {

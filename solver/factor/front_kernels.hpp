@@ -49,7 +49,7 @@ class Panel {
   Panel(const Supernode& node, double* panel)
       : node_(node), tiles_(node.pivot_tiles() + node.row_tiles()), panel_(panel) {}
 
-  double* tile(int t) const { return panel_ + static_cast<std::size_t>(t) * node_.tile_size(); }
+  double* tile(int t) const { return panel_ + at(t) * node_.tile_size(); }
   double* row_tile(int t) const { return tile(node_.pivot_tiles() + t); }
   double* block_row(int local) const { return panel_ + node_.block_offset(local); }
   static double* column(double* tile, int c) { return tile + static_cast<std::ptrdiff_t>(c) * tile_rows; }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "solver/factor/elimination_order.hpp"
 #include "solver/linear/block_kernels.hpp"
 
 namespace rodsweep {
@@ -52,16 +53,16 @@ std::vector<std::map<int, int>> later_neighbours(const BlockMatrix& pattern, con
   std::vector<std::map<int, int>> later(position.size());  // and the levels of their couplings
   for (int row = 0; row < pattern.block_rows(); ++row)
     for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k) {
-      const int i = position[static_cast<std::size_t>(row)];
-      const int j = position[static_cast<std::size_t>(pattern.column(k))];
-      if (j > i) later[static_cast<std::size_t>(i)][j] = 0;
+      const int i = position[at(row)];
+      const int j = position[at(pattern.column(k))];
+      if (j > i) later[at(i)][j] = 0;
     }
   for (const std::map<int, int>& neighbours : later)
     for (auto i = neighbours.begin(); i != neighbours.end(); ++i)
       for (auto j = std::next(i); j != neighbours.end(); ++j) {
         const int level = i->second + j->second + 1;
         if (level > levels) continue;
-        int& known = later[static_cast<std::size_t>(i->first)].emplace(j->first, level).first->second;
+        int& known = later[at(i->first)].emplace(j->first, level).first->second;
         known = std::min(known, level);
       }
   return later;
@@ -71,11 +72,7 @@ std::vector<std::map<int, int>> later_neighbours(const BlockMatrix& pattern, con
 
 IncompleteFactor::IncompleteFactor(const BlockMatrix& pattern, const std::vector<int>& order, int levels) {
   const std::size_t n = order.size();
-  std::vector<int> position(n), row_at(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    row_at[i] = order[n - 1 - i];
-    position[static_cast<std::size_t>(row_at[i])] = static_cast<int>(i);
-  }
+  const std::vector<int> row_at(order.rbegin(), order.rend()), position = inverse(row_at);
   std::vector<std::map<int, int>> entries =
       later_neighbours(pattern, position, levels);  // levels, then entries of off_
   for (std::size_t i = 0; i < n; ++i) {
@@ -83,7 +80,7 @@ IncompleteFactor::IncompleteFactor(const BlockMatrix& pattern, const std::vector
     for (auto& [neighbour, entry] : entries[i]) {
       entry = static_cast<int>(off_.size());
       // Row r of B = A_kp is column r of A_pk.
-      off_.push_back({neighbour, pattern.find(row_at[static_cast<std::size_t>(neighbour)], row_at[i]), 0});
+      off_.push_back({neighbour, pattern.find(row_at[at(neighbour)], row_at[i]), 0});
     }
     column.off_end = static_cast<int>(off_.size());
     columns_.push_back(column);
@@ -92,11 +89,11 @@ IncompleteFactor::IncompleteFactor(const BlockMatrix& pattern, const std::vector
     column.update_begin = static_cast<int>(updates_.size());
     for (int q = column.off_begin; q < column.off_end; ++q)
       for (int p = column.off_begin; p < q; ++p) {
-        const auto& of_p = entries[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)];
-        const auto target = of_p.find(off_[static_cast<std::size_t>(q)].position);
+        const auto& of_p = entries[at(off_[at(p)].position)];
+        const auto target = of_p.find(off_[at(q)].position);
         if (target == of_p.end()) continue;
         updates_.push_back({p, target->second});
-        ++off_[static_cast<std::size_t>(q)].updates;
+        ++off_[at(q)].updates;
       }
   }
   diagonal_work_.resize(n);
@@ -107,9 +104,7 @@ IncompleteFactor::IncompleteFactor(const BlockMatrix& pattern, const std::vector
 }
 
 bool IncompleteFactor::factorise(const BlockMatrix& a) {
-  double largest = 0;
-  for (int row = 0; row < a.block_rows(); ++row)
-    for (int r = 0; r < 6; ++r) largest = std::max(largest, a.diagonal_entry(row, r));
+  const double largest = largest_diagonal_entry(a);
   scale_ = std::isfinite(largest) && largest > 0 ? std::exp2(std::ilogb(largest)) : 1;
   shift_ = 0;
   if (eliminate(a)) return true;
@@ -120,11 +115,11 @@ bool IncompleteFactor::factorise(const BlockMatrix& a) {
 
 bool IncompleteFactor::eliminate(const BlockMatrix& a) {
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    diagonal_work_[i] = a.blocks[static_cast<std::size_t>(a.diagonal(columns_[i].row))];
+    diagonal_work_[i] = a.blocks[at(a.diagonal(columns_[i].row))];
     for (int r = 0; r < 6; ++r) diagonal_work_[i].column[r] += shift_ * (diagonal_work_[i].column[r] * unit_lane[r]);
   }
   for (std::size_t p = 0; p < off_.size(); ++p)
-    off_work_[p] = off_[p].source < 0 ? Block6{} : a.blocks[static_cast<std::size_t>(off_[p].source)];
+    off_work_[p] = off_[p].source < 0 ? Block6{} : a.blocks[at(off_[p].source)];
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const Column& column = columns_[i];
     RowFactor factor;
@@ -134,17 +129,17 @@ bool IncompleteFactor::eliminate(const BlockMatrix& a) {
     narrow(inverse, scale_, inverse_[i]);
     const Update* update = updates_.data() + column.update_begin;
     for (int q = column.off_begin; q < column.off_end; ++q) {
-      const Off& off = off_[static_cast<std::size_t>(q)];
-      const Block6& b = off_work_[static_cast<std::size_t>(q)];
+      const Off& off = off_[at(q)];
+      const Block6& b = off_work_[at(q)];
       Block6 x = b;
       solve_rows(factor, x);
       for (const Update* const end = update + off.updates; update < end; ++update) {
-        Block6& target = off_work_[static_cast<std::size_t>(update->target)];
-        subtract_product(target, off_work_[static_cast<std::size_t>(update->p)], x, target);
+        Block6& target = off_work_[at(update->target)];
+        subtract_product(target, off_work_[at(update->p)], x, target);
       }
-      Block6& diagonal = diagonal_work_[static_cast<std::size_t>(off.position)];
+      Block6& diagonal = diagonal_work_[at(off.position)];
       subtract_product(diagonal, b, x, diagonal);
-      narrow(x, 1, factor_[static_cast<std::size_t>(q)]);
+      narrow(x, 1, factor_[at(q)]);
     }
   }
   return true;
@@ -163,9 +158,9 @@ void IncompleteFactor::apply(const double* r, double* z) {
     const Lane8f b = folded(solution_[i]);
     const TwoRows b01 = factors<0>(b), b23 = factors<1>(b), b45 = factors<2>(b);
     for (int p = column.off_begin; p < column.off_end; ++p) {
-      const FloatBlock& x = factor_[static_cast<std::size_t>(p)];
-      TwoRows& at = solution_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)];
-      at = at - x.rows[0] * b01 - x.rows[1] * b23 - x.rows[2] * b45;
+      const FloatBlock& x = factor_[at(p)];
+      TwoRows& to = solution_[at(off_[at(p)].position)];
+      to = to - x.rows[0] * b01 - x.rows[1] * b23 - x.rows[2] * b45;
     }
     const FloatBlock& s = inverse_[i];
     solution_[i] = twice(folded(s.rows[0] * b01 + s.rows[1] * b23 + s.rows[2] * b45));
@@ -175,8 +170,8 @@ void IncompleteFactor::apply(const double* r, double* z) {
     const Column& column = columns_[i];
     TwoRows terms[3]{};
     for (int p = column.off_begin; p < column.off_end; ++p) {
-      const FloatBlock& x = factor_[static_cast<std::size_t>(p)];
-      const TwoRows& known = solution_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)];
+      const FloatBlock& x = factor_[at(p)];
+      const TwoRows& known = solution_[at(off_[at(p)].position)];
       for (int j = 0; j < 3; ++j) terms[j] += x.rows[j] * known;
     }
     if (column.off_begin < column.off_end) solution_[i] -= row_sums_twice(terms);

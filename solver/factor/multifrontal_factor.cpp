@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "solver/factor/elimination_order.hpp"
 #include "solver/factor/front_kernels.hpp"
 
 namespace rodsweep {
@@ -58,8 +59,8 @@ void subtract_transposed(const double* block, const Lane8* known, Lane8* x) {
 
 MultifrontalFactor::MultifrontalFactor(const BlockMatrix& pattern, AssemblyTree tree) : tree_(std::move(tree)) {
   tree_.find_rows(pattern);
-  std::vector<int> column_of(tree_.row.size()), place(tree_.row.size());
-  for (std::size_t k = 0; k < tree_.row.size(); ++k) column_of[at(tree_.row[k])] = static_cast<int>(k);
+  const std::vector<int> column_of = inverse(tree_.row);
+  std::vector<int> place(tree_.row.size());
   int widest = 0;
   std::size_t tallest = 0;
   for (const Supernode& node : tree_.supernodes) {

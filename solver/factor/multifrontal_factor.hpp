@@ -35,9 +35,7 @@ class MultifrontalFactor {
   void backward(const Supernode& node);
   void forward_in_lanes(const Supernode& node);
   void backward_in_lanes(const Supernode& node);
-  double* update_of(const Supernode& node) {
-    return entries(stacks_[static_cast<std::size_t>(node.stack)]) + node.update;
-  }
+  double* update_of(const Supernode& node) { return entries(stacks_[at(node.stack)]) + node.update; }
   static double* entries(std::vector<Lane8>& of) { return reinterpret_cast<double*>(of.data()); }
 
   AssemblyTree tree_;

@@ -1,4 +1,4 @@
-#include "solver/factor/nested_dissection.hpp"
+#include "solver/factor/elimination_order.hpp"
 
 #include <metis.h>
 
@@ -49,7 +49,7 @@ std::vector<int> nested_dissection_order(const BlockMatrix& pattern) {
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_NUMBERING] = 0;
   options[METIS_OPTION_SEED] = 1;
-  std::vector<idx_t> order(static_cast<std::size_t>(n)), place(order);  // in the order of elimination, and its inverse
+  std::vector<idx_t> order(at(n)), place(order);  // in the order of elimination, and its inverse
   const MetisCall call;
   const int done = METIS_NodeND(&n, start.data(), neighbours.data(), nullptr, options, order.data(), place.data());
   if (done == METIS_ERROR_MEMORY) throw std::bad_alloc();  // another order would give other bits

@@ -1,4 +1,4 @@
-#include "solver/factor/nested_dissection.hpp"
+#include "solver/factor/elimination_order.hpp"
 
 namespace rodsweep {
 

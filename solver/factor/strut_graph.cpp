@@ -28,9 +28,7 @@ class Walk {
     for (int s = 0; s < rod_.segment_count(); ++s)  // rings
       if (is_inner(s)) {
         crossing_[at(s)] = true;
-        out_.place[at(s)] = static_cast<int>(out_.crossings.size());
-        out_.crossings.push_back(s);
-        out_.node.push_back(out_.nodes());
+        add_crossing(s, out_.nodes());
         add_strut(beyond(joints_of_[at(s)].front(), s));
       }
     for (int k = 0; k < rod_.joint_count(); ++k)
@@ -50,6 +48,12 @@ class Walk {
     return false;
   }
 
+  void add_crossing(int s, int node) {
+    out_.place[at(s)] = static_cast<int>(out_.crossings.size());
+    out_.crossings.push_back(s);
+    out_.node.push_back(node);
+  }
+
   /// Numbers crossings by node, nodes by their first segment.
   void number_crossings() {
     out_.place.assign(crossing_.size(), -1);
@@ -62,9 +66,7 @@ class Walk {
         const int s = queue.back();
         queue.pop_back();
         if (out_.place[at(s)] >= 0) continue;
-        out_.place[at(s)] = static_cast<int>(out_.crossings.size());
-        out_.crossings.push_back(s);
-        out_.node.push_back(node);
+        add_crossing(s, node);
         for (const int k : joints_of_[at(s)])
           if (joint(k).arm_a.isZero() && joint(k).arm_b.isZero() && crossing_[at(beyond(k, s))])
             queue.push_back(beyond(k, s));

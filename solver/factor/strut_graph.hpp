@@ -16,7 +16,7 @@
 namespace rodsweep {
 
 struct Strut {
-  int begin = -1, end = -1;   ///< crossings, counted as in StrutGraph::crossings; -1: none
+  int begin = -1, end = -1;   ///< crossings, numbered as in StrutGraph::crossings; -1: none
   std::vector<int> segments;  ///< from begin to end
   std::vector<int> joints;    ///< one more: before, between and after them; -1 at a free end
 };

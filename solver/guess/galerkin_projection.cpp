@@ -21,40 +21,27 @@ void GalerkinProjection::project(const BlockMatrix& a, const VectorX& b, StoredV
   v.project(a, b, gram_, start_);
   order_ = order;
   known_ = known;
-  fill(equations_);
-  solve(equations_, start_);
+  equations_.factorise(gram_, order_, known_);
+  equations_.solve(order_, start_);
   v.combine(start_, x0);
 }
 
 void GalerkinProjection::deflate(const BlockMatrix& a, StoredVectors& v, StoredVectors& products) {
-  fill(deflating_equations_);
+  deflating_equations_.factorise(gram_, order_, known_);
   vectors_ = &v;
   products_ = &products;
   products.multiply(a, v);
 }
 
-void GalerkinProjection::fill(NormalEquations& equations) {
-  for (int k = 0; k < known_; ++k)
-    for (int i = 0; i < known_; ++i) equations.gram(i, k) = gram_(order_[i], order_[k]);
-  equations.factorise(known_);
-}
-
-void GalerkinProjection::solve(NormalEquations& equations, VectorX& c) {
-  for (int i = 0; i < known_; ++i) equations.right_side(i) = c[order_[i]];
-  equations.solve();
-  c.setZero();
-  for (int i = 0; i < known_; ++i) c[order_[i]] = equations.coefficient(i);
-}
-
 void GalerkinProjection::reduce(double* r) {
   vectors_->dots(r, of_residual_);
-  solve(deflating_equations_, of_residual_);
+  deflating_equations_.solve(order_, of_residual_);
   products_->subtract(of_residual_, r);
 }
 
 void GalerkinProjection::complete(double* z) {
   products_->dots(z, coefficients_);
-  solve(deflating_equations_, coefficients_);
+  deflating_equations_.solve(order_, coefficients_);
   coefficients_ -= of_residual_;
   vectors_->subtract(coefficients_, z);
 }

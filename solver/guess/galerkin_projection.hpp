@@ -3,13 +3,13 @@
 // A changes from solve to solve, so A V is formed again: as many products with A as there are vectors, all in one pass
 // (stored_vectors.hpp). A vector that those before it nearly span is dropped (normal_equations.hpp).
 //
-// CG can also project the same span out of every residual r (deflation.hpp),
+// CG can also project the same span out of every residual r (Deflation of cg_solver.hpp),
 //   c = E^-1 V^T r,  r <- r - A V c;   z <- z - V (E^-1 (A V)^T z - c):
 // Then search directions are A-orthogonal to V. This drops vectors that others nearly span (pivot below 1e-6), which the
 // guess itself uses. An iteration costs four more passes over V.
 #pragma once
 
-#include "solver/cg/deflation.hpp"
+#include "solver/cg/cg_solver.hpp"
 #include "solver/guess/normal_equations.hpp"
 #include "solver/linear/stored_vectors.hpp"
 
@@ -31,10 +31,6 @@ class GalerkinProjection : public Deflation {
   void complete(double* z) override;
 
  private:
-  void fill(NormalEquations& equations);
-  /// c <- E^-1 c
-  void solve(NormalEquations& equations, VectorX& c);
-
   Eigen::VectorXi order_;
   int known_ = 0;
   Eigen::MatrixXd gram_;  ///< E

@@ -16,13 +16,13 @@ inline void subtract(Lane8* y, double a, const Lane8* x, std::size_t width) {
 }  // namespace
 
 NormalEquations::NormalEquations(int most, double smallest_pivot)
-    : width_(static_cast<std::size_t>((most + 7) / 8)),
+    : width_(at((most + 7) / 8)),
       smallest_pivot_(smallest_pivot),
-      gram_(static_cast<std::size_t>(most) * width_),
+      gram_(at(most) * width_),
       lower_(gram_),
       scale_(width_),
       coefficients_(width_),
-      inverse_pivot_(static_cast<std::size_t>(most)) {}
+      inverse_pivot_(at(most)) {}
 
 void NormalEquations::factorise(int count, double damping) {
   count_ = count;
@@ -40,7 +40,7 @@ void NormalEquations::factorise(int count, double damping) {
     const double pivot = gram(k, k);
     const bool kept = pivot > smallest_pivot_;
     const double inverse = kept ? 1 / pivot : 0;
-    inverse_pivot_[static_cast<std::size_t>(k)] = inverse;
+    inverse_pivot_[at(k)] = inverse;
     Lane8* own = column(gram_, k);
     Lane8* below = column(lower_, k);
     if (!kept) continue;
@@ -56,7 +56,7 @@ void NormalEquations::factorise(int count, double damping) {
 void NormalEquations::solve() {
   double* c = entries(coefficients_, 0);
   for (std::size_t w = 0; w < width_; ++w) coefficients_[w] *= scale_[w];
-  const auto inverse = [&](int k) { return inverse_pivot_[static_cast<std::size_t>(k)]; };
+  const auto inverse = [&](int k) { return inverse_pivot_[at(k)]; };
   for (int k = 0; k < count_; ++k)
     if (inverse(k) > 0) subtract(coefficients_.data(), c[k], column(lower_, k), width_);
   for (int k = count_ - 1; k >= 0; --k) {
@@ -69,6 +69,20 @@ void NormalEquations::solve() {
     }
   }
   for (std::size_t w = 0; w < width_; ++w) coefficients_[w] *= scale_[w];
+}
+
+void NormalEquations::factorise(const Eigen::MatrixXd& gram_of, const Eigen::VectorXi& order, int count,
+                                double damping) {
+  for (int k = 0; k < count; ++k)
+    for (int i = 0; i < count; ++i) gram(i, k) = gram_of(order[i], order[k]);
+  factorise(count, damping);
+}
+
+void NormalEquations::solve(const Eigen::VectorXi& order, VectorX& c) {
+  for (int i = 0; i < count_; ++i) right_side(i) = c[order[i]];
+  solve();
+  c.setZero();
+  for (int i = 0; i < count_; ++i) c[order[i]] = coefficient(i);
 }
 
 }  // namespace rodsweep

@@ -24,10 +24,13 @@ class NormalEquations {
   void factorise(int count, double damping = 0);
   /// Replaces g by c, which is 0 for dropped vectors and vectors of length zero. One factorisation allows many solves.
   void solve();
+  /// The same for the first `count` of `order` among the rows of a larger Gram matrix, and of c, which is 0 in others.
+  void factorise(const Eigen::MatrixXd& gram, const Eigen::VectorXi& order, int count, double damping = 0);
+  void solve(const Eigen::VectorXi& order, VectorX& c);
   double coefficient(int row) const { return reinterpret_cast<const double*>(coefficients_.data())[row]; }
 
  private:
-  Lane8* column(std::vector<Lane8>& of, int index) { return of.data() + static_cast<std::size_t>(index) * width_; }
+  Lane8* column(std::vector<Lane8>& of, int index) { return of.data() + at(index) * width_; }
   double* entries(std::vector<Lane8>& of, int index) { return reinterpret_cast<double*>(column(of, index)); }
 
   std::size_t width_;  ///< lanes of a column

@@ -11,36 +11,32 @@
 
 #include <vector>
 
-#include "solver/guess/initial_guess.hpp"
+#include "solver/guess/history_guess.hpp"
 #include "solver/guess/normal_equations.hpp"
 
 namespace rodsweep {
 
-class RegressionGuess : public InitialGuess {
+struct SolvedSystems : RecentSteps {
+  VectorX weight;                          ///< W
+  Eigen::MatrixXd right_sides, solutions;  ///< W b_k and x_k, one per column
+  Eigen::MatrixXd gram;                    ///< dot products of the right-hand sides
+  /// The system last proposed for: W b, and its dot products with the stored ones and itself.
+  VectorX right_side, products;
+  double squared_norm = 0;
+  void keep(const VectorX& solution) { solutions.col(newest) = solution; }
+};
+
+class RegressionGuess : public HistoryGuess<SolvedSystems> {
  public:
   /// From the last `size` >= 1 systems of one (rod, Newton iteration); `noise` is the tolerance of their solves, 0 for
   /// direct solves. As with extrapolation, a time step without a solution starts the history again.
   RegressionGuess(const Scene& scene, int newton_iterations, int size, double noise);
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
-  void accept_total(int rod, int step, const VectorX& total) override;
 
  private:
-  using Matrix = Eigen::MatrixXd;
-  struct History {
-    VectorX weight;                 ///< W
-    Matrix right_sides, solutions;  ///< W b_k and x_k, one per column
-    Matrix gram;                    ///< dot products of the right-hand sides
-    int known = 0, newest = -1, last_step = -2;
-    /// The system last proposed for: W b, and its dot products with the stored ones and itself.
-    VectorX right_side, products;
-    double squared_norm = 0;
-  };
-  History& history(const SolvePosition& at);
-
-  int newton_iterations_, size_;
   double noise_;
-  std::vector<History> histories_;
+  Eigen::VectorXi order_;  ///< of a history's solutions, the newest first
   NormalEquations equations_;
   VectorX coefficients_;  ///< one per column
 };

@@ -14,7 +14,7 @@ constexpr double smallest_mass = 1e-8;
 }  // namespace
 
 RitzGuess::RitzGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, int size, int collected, int lag_steps)
-    : inner_(std::move(inner)),
+    : WrappedGuess(std::move(inner)),
       size_(size),
       most_collected_(collected),
       lag_steps_(lag_steps),
@@ -24,7 +24,7 @@ RitzGuess::RitzGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, in
       mass_(size + collected, size + collected),
       combinations_(size + collected, size + collected),
       eigen_(size + collected),
-      dropped_(static_cast<std::size_t>(size + collected)),
+      dropped_(at(size + collected)),
       coefficients_(VectorX::Zero(size + collected)) {
   std::iota(order_.begin(), order_.end(), 0);
   for (const Rod& rod : scene.rods) {
@@ -33,7 +33,7 @@ RitzGuess::RitzGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, in
     const Basis basis{StoredVectors(n, size + collected), Eigen::MatrixXd::Zero(n, size + collected), {}};
     spaces_.push_back(
         {none, none, 0, basis, basis, false, Eigen::MatrixXd::Zero(n, size), VectorX::Zero(n), VectorX::Zero(n), 0});
-    for (Basis* of : {&spaces_.back().begun, &spaces_.back().basis}) of->values.reserve(static_cast<std::size_t>(size));
+    for (Basis* of : {&spaces_.back().begun, &spaces_.back().basis}) of->values.reserve(at(size));
   }
 }
 
@@ -48,14 +48,7 @@ Proposal RitzGuess::propose(const LinearSystem& system, const SolvePosition& at,
   if (space.known == 0) return proposal;
 
   proposal.products = proposal.start_products() + space.known;
-  if (!proposal.nonzero) {
-    space.residual = system.rhs();
-  } else if (proposal.residual) {
-    space.residual = *proposal.residual;
-  } else {
-    system.multiply(x0.data(), space.residual.data());
-    space.residual = system.rhs() - space.residual;
-  }
+  find_residual(system, proposal, x0, space.residual);
   projection_.project(*matrix_, space.residual, space.ritz, order_, space.known, space.scratch);
   projection_.deflate(*matrix_, space.ritz, space.products);
   projection_.subtract_product(space.residual);
@@ -109,7 +102,7 @@ bool RitzGuess::rayleigh_ritz(Space& space, const BlockMatrix& a) {
   // Dropped combinations are zero. Their eigenvalue is the largest, so that they come last.
   const double largest = 2 * gram_.trace();
   for (int i = 0; i < gram_.rows(); ++i)
-    if (dropped_[static_cast<std::size_t>(i)]) gram_(i, i) = largest;
+    if (dropped_[at(i)]) gram_(i, i) = largest;
   eigen_.compute(gram_);
   mass_.noalias() = combinations_.lazyProduct(eigen_.eigenvectors());
   const int spanned = static_cast<int>(std::count(dropped_.begin(), dropped_.end(), false));
@@ -140,7 +133,7 @@ bool RitzGuess::orthonormalise(Space& space) {
   eigen_.compute(mass_);
   for (int i = 0; i < most; ++i) {
     const double value = eigen_.eigenvalues()[i];
-    dropped_[static_cast<std::size_t>(i)] = value < smallest_mass;
+    dropped_[at(i)] = value < smallest_mass;
     const double scale = value < smallest_mass ? 0 : 1 / std::sqrt(value);
     combinations_.col(i) = scale * coefficients_.cwiseProduct(eigen_.eigenvectors().col(i));
   }

@@ -17,26 +17,23 @@
 #pragma once
 
 #include <Eigen/Eigenvalues>
-#include <memory>
 #include <vector>
 
 #include "solver/guess/galerkin_projection.hpp"
-#include "solver/guess/initial_guess.hpp"
+#include "solver/guess/wrapped_guess.hpp"
 
 namespace rodsweep {
 
-class RitzGuess : public InitialGuess, private Deflation {
+class RitzGuess : public WrappedGuess, private Deflation {
  public:
   /// `size` Ritz vectors and `collected` residuals, both at least 1; lag_steps of 0: a step after every solve.
   RitzGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, int size, int collected, int lag_steps);
-  void prepare(const SolvePosition& at) override { inner_->prepare(at); }
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
-  void accept_total(int rod, int step, const VectorX& total) override { inner_->accept_total(rod, step, total); }
   Deflation* deflation() override { return this; }
 
   /// theta of a rod's Ritz vectors, ascending.
-  const std::vector<double>& ritz_values(int rod) const { return spaces_[static_cast<std::size_t>(rod)].begun.values; }
+  const std::vector<double>& ritz_values(int rod) const { return spaces_[at(rod)].begun.values; }
 
  private:
   /// V begins with `size` Ritz vectors; unused ones are zero.
@@ -63,7 +60,6 @@ class RitzGuess : public InitialGuess, private Deflation {
   void reduce(double* r) override;
   void complete(double* z) override;
 
-  std::unique_ptr<InitialGuess> inner_;
   int size_, most_collected_, lag_steps_;
   std::vector<Space> spaces_;
   Eigen::VectorXi order_;

@@ -9,11 +9,16 @@
 #include <vector>
 
 #include "solver/guess/galerkin_projection.hpp"
-#include "solver/guess/initial_guess.hpp"
+#include "solver/guess/history_guess.hpp"
 
 namespace rodsweep {
 
-class SubspaceGuess : public InitialGuess {
+struct StoredSolutions : RecentSteps {
+  StoredVectors solutions;
+  void keep(const VectorX& solution) { solutions.set(newest, solution); }
+};
+
+class SubspaceGuess : public HistoryGuess<StoredSolutions> {
  public:
   enum class Window {
     restarted,  ///< `fischer`: solutions are collected until there are `size`, then the newest starts a new set
@@ -24,19 +29,10 @@ class SubspaceGuess : public InitialGuess {
   SubspaceGuess(const Scene& scene, int newton_iterations, int size, Window window, Use use = Use::guess);
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
-  void accept_total(int rod, int step, const VectorX& total) override;
   Deflation* deflation() override { return deflating_ ? &projection_ : nullptr; }
 
  private:
-  struct History {
-    StoredVectors solutions;
-    int known = 0, newest = -1, last_step = -2;
-  };
-  History& history(const SolvePosition& at);
-
-  int newton_iterations_, size_;
   Window window_;
-  std::vector<History> histories_;
   std::vector<StoredVectors> products_;  ///< per rod: A V; empty unless deflating
   Eigen::VectorXi order_;                ///< of a history's solutions, the newest first
   GalerkinProjection projection_;

@@ -2,8 +2,8 @@
 
 namespace rodsweep {
 
-TotalsGuess::TotalsGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner) : inner_(std::move(inner)) {
-  for (const Rod& rod : scene.rods) totals_.push_back({VectorX::Zero(6 * rod.joint_count())});
+TotalsGuess::TotalsGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner) : WrappedGuess(std::move(inner)) {
+  for (const VectorX& none : unknowns_of(scene)) totals_.push_back({none});
 }
 
 void TotalsGuess::prepare(const SolvePosition& at) {

@@ -7,22 +7,18 @@
 // their own histories.
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include "solver/guess/initial_guess.hpp"
+#include "solver/guess/wrapped_guess.hpp"
 
 namespace rodsweep {
 
-class TotalsGuess : public InitialGuess {
+class TotalsGuess : public WrappedGuess {
  public:
   TotalsGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner);
   void prepare(const SolvePosition& at) override;
-  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override {
-    return inner_->propose(system, at, x0);
-  }
   void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
-  Deflation* deflation() override { return inner_->deflation(); }
+  void accept_total(int, int, const VectorX&) override {}  // its own sums are more recent
 
  private:
   struct Total {
@@ -30,7 +26,6 @@ class TotalsGuess : public InitialGuess {
     int step = -1;     ///< of the sum
     bool told = true;  ///< whether the inner guess received it
   };
-  std::unique_ptr<InitialGuess> inner_;
   std::vector<Total> totals_;  ///< per rod
 };
 

@@ -6,14 +6,14 @@
 namespace rodsweep {
 
 BlockMatrix::BlockMatrix(int block_rows, const std::vector<std::pair<int, int>>& couplings) {
-  std::vector<std::vector<int>> rows(static_cast<std::size_t>(block_rows));
-  for (int i = 0; i < block_rows; ++i) rows[static_cast<std::size_t>(i)].push_back(i);
+  std::vector<std::vector<int>> rows(at(block_rows));
+  for (int i = 0; i < block_rows; ++i) rows[at(i)].push_back(i);
   for (const auto& [i, j] : couplings) {
-    rows[static_cast<std::size_t>(i)].push_back(j);
-    rows[static_cast<std::size_t>(j)].push_back(i);
+    rows[at(i)].push_back(j);
+    rows[at(j)].push_back(i);
   }
   for (int i = 0; i < block_rows; ++i) {
-    std::vector<int>& row = rows[static_cast<std::size_t>(i)];
+    std::vector<int>& row = rows[at(i)];
     std::sort(row.begin(), row.end());
     row.erase(std::unique(row.begin(), row.end()), row.end());
     const auto own = std::lower_bound(row.begin(), row.end(), i);
@@ -35,7 +35,7 @@ void BlockMatrix::multiply(const double* x, double* y) const {
   for (int i = 0; i < rows; ++i) {
     Lane8 even{}, odd{};
     for (int k = row_begin(i); k < row_end(i); ++k) {
-      const Block6& block = blocks[static_cast<std::size_t>(k)];
+      const Block6& block = blocks[at(k)];
       const double* xj = x + 6 * column(k);
       even += block.column[0] * xj[0];
       odd += block.column[1] * xj[1];
@@ -53,8 +53,7 @@ Eigen::MatrixXd BlockMatrix::dense() const {
   for (int i = 0; i < block_rows(); ++i)
     for (int k = row_begin(i); k < row_end(i); ++k)
       for (int c = 0; c < 6; ++c)
-        for (int r = 0; r < 6; ++r)
-          out(6 * i + r, 6 * column(k) + c) = blocks[static_cast<std::size_t>(k)].column[c][r];
+        for (int r = 0; r < 6; ++r) out(6 * i + r, 6 * column(k) + c) = blocks[at(k)].column[c][r];
   return out;
 }
 
@@ -73,6 +72,13 @@ double jacobi_norm_squared(const BlockMatrix& a, const VectorX& r) {
 double energy_norm_squared(const BlockMatrix& a, const VectorX& x, VectorX& scratch) {
   a.multiply(x.data(), scratch.data());
   return x.dot(scratch);
+}
+
+double largest_diagonal_entry(const BlockMatrix& a) {
+  double largest = 0;
+  for (int block_row = 0; block_row < a.block_rows(); ++block_row)
+    for (int row = 0; row < 6; ++row) largest = std::max(largest, a.diagonal_entry(block_row, row));
+  return largest;
 }
 
 }  // namespace rodsweep

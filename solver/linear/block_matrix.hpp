@@ -20,20 +20,18 @@ class BlockMatrix {
   int unknowns() const { return 6 * block_rows(); }
   int block_count() const { return static_cast<int>(blocks.size()); }
 
-  int row_begin(int row) const { return row_start_[static_cast<std::size_t>(row)]; }
-  int row_end(int row) const { return row_start_[static_cast<std::size_t>(row) + 1]; }
-  int column(int block) const { return columns_[static_cast<std::size_t>(block)]; }
+  int row_begin(int row) const { return row_start_[at(row)]; }
+  int row_end(int row) const { return row_start_[at(row) + 1]; }
+  int column(int block) const { return columns_[at(block)]; }
   const int* row_starts() const { return row_start_.data(); }  ///< first block of each row, and the end
   const int* columns() const { return columns_.data(); }       ///< of each block
-  int diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
+  int diagonal(int row) const { return diagonal_[at(row)]; }
   int find(int row, int column) const;  ///< index of the block; -1: not in the pattern
 
   /// y = A x. `x` and `y` hold unknowns() doubles and don't overlap.
   void multiply(const double* x, double* y) const;
 
-  double diagonal_entry(int block_row, int row) const {
-    return blocks[static_cast<std::size_t>(diagonal(block_row))].column[row][row];
-  }
+  double diagonal_entry(int block_row, int row) const { return blocks[at(diagonal(block_row))].column[row][row]; }
   Eigen::MatrixXd dense() const;
 
   std::vector<Block6> blocks;  ///< columns of each block, in row order
@@ -44,6 +42,8 @@ class BlockMatrix {
 
 /// s = D^-1/2, D the diagonal of A: the scaling of Jacobi. The caller sizes s.
 void inverse_root_diagonal(const BlockMatrix& a, VectorX& s);
+
+double largest_diagonal_entry(const BlockMatrix& a);
 
 /// r^T D^-1 r.
 double jacobi_norm_squared(const BlockMatrix& a, const VectorX& r);

@@ -103,7 +103,7 @@ void ConstraintProduct::find_impulses(const double* x) const {
   std::fill(at_.begin(), at_.end(), Lane8{});
   const int count = static_cast<int>(ends_.size());
   for (int first = 0; first < count; first += W) {
-    const Group& group = groups_[static_cast<std::size_t>(first / W)];
+    const Group& group = groups_[at(first / W)];
     const double* const from = x + 6 * first;
     const int here = std::min(W, count - first);
     const Sextuples multipliers = first + W < count
@@ -116,8 +116,8 @@ void ConstraintProduct::find_impulses(const double* x) const {
     spread(joined(b.force, b.torque), on_b);
     const Ends* const ends = ends_.data() + first;
     for (int i = 0; i < here; ++i) {
-      at_[static_cast<std::size_t>(ends[i].a)] += on_a[i];
-      at_[static_cast<std::size_t>(ends[i].b)] += on_b[i];
+      at_[at(ends[i].a)] += on_a[i];
+      at_[at(ends[i].b)] += on_b[i];
     }
   }
 }
@@ -125,10 +125,10 @@ void ConstraintProduct::find_impulses(const double* x) const {
 void ConstraintProduct::find_changes(const double* x, double* y) const {
   const int count = static_cast<int>(ends_.size());
   for (int first = 0; first < count; first += W) {
-    const Group& group = groups_[static_cast<std::size_t>(first / W)];
+    const Group& group = groups_[at(first / W)];
     const Ends* const ends = ends_.data() + first;
     const int here = std::min(W, count - first);
-    const auto of = [&](int segment) { return at_[static_cast<std::size_t>(segment)]; };
+    const auto of = [&](int segment) { return at_[at(segment)]; };
     const Sextuples a = gathered([&](int i) { return of(ends[std::min(i, here - 1)].a); });
     const Sextuples b = gathered([&](int i) { return of(ends[std::min(i, here - 1)].b); });
     const Triples<Lane> half = half_turn(group.turn);

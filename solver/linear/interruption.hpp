@@ -1,4 +1,4 @@
-// Cancelling of long computations: a task may exceed its time limit, or its sweep may be stopped. The caller creates an
+// Cancelling of long computations: a task may exceed its time limit, or a run may be stopped. The caller creates an
 // Interruptible with a function that returns whether to stop; one may exist per thread at a time. Long loops
 // (iterations of CG, fronts of a factorisation, sweeps over contacts) report their work. After some of it they look at the
 // clock, and call that function every two milliseconds. Without an Interruptible nothing is interrupted.

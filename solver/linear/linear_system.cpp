@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "solver/linear/interruption.hpp"
-#include "solver/numbers/lane_vectors.hpp"
+#include "solver/numbers/lanes.hpp"
 #include "solver/rod/joint_kernels.hpp"
 
 namespace rodsweep {
@@ -19,19 +19,14 @@ LinearSystem::LinearSystem(const Rod& rod)
   const std::int64_t a_third_ns = 500ll * rod.joint_count();  // with a million joints this lasts seconds
   check_interrupted(a_third_ns);
   refuse_static_joints(rod);  // their rows would be alpha~ alone, which may be zero
-  std::vector<std::vector<Side>> by_segment(rod.segments.size());
-  for (int k = 0; k < rod.joint_count(); ++k) {
-    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
-    for (const bool is_b : {false, true}) {
-      const std::size_t segment = static_cast<std::size_t>(is_b ? joint.b : joint.a);
-      if (!rod.segments[segment].is_static) by_segment[segment].push_back({k, is_b});
-    }
-  }
+  std::vector<std::vector<JointEnd>> by_segment = joints_by_segment(rod);
+  for (std::size_t s = 0; s < by_segment.size(); ++s)
+    if (rod.segments[s].is_static) by_segment[s].clear();
   std::vector<std::pair<int, int>> couplings;
   side_start_.push_back(0);
-  for (const std::vector<Side>& sides : by_segment) {
-    for (const Side& u : sides)
-      for (const Side& v : sides) couplings.emplace_back(u.joint, v.joint);
+  for (const std::vector<JointEnd>& sides : by_segment) {
+    for (const JointEnd& u : sides)
+      for (const JointEnd& v : sides) couplings.emplace_back(u.joint, v.joint);
     sides_.insert(sides_.end(), sides.begin(), sides.end());
     side_start_.push_back(static_cast<int>(sides_.size()));
   }
@@ -41,12 +36,12 @@ LinearSystem::LinearSystem(const Rod& rod)
   if (matrix_.block_count() >= ConstraintProduct::least_blocks) product_.emplace(rod);
 
   std::vector<bool> written(matrix_.blocks.size(), false);
-  for (const std::vector<Side>& sides : by_segment)
-    for (const Side& u : sides)
-      for (const Side& v : sides) {
+  for (const std::vector<JointEnd>& sides : by_segment)
+    for (const JointEnd& u : sides)
+      for (const JointEnd& v : sides) {
         const int block = matrix_.find(u.joint, v.joint);
-        contributions_.push_back({block, !written[static_cast<std::size_t>(block)]});
-        written[static_cast<std::size_t>(block)] = true;
+        contributions_.push_back({block, !written[at(block)]});
+        written[at(block)] = true;
       }
 }
 
@@ -66,8 +61,7 @@ void LinearSystem::assemble_balanced(Rod& rod, double dt) {
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Joint& joint = rod.joints[k];
     double* b = rhs_.data() + 6 * k;
-    store6(b, load6(b) + constraint_change(linearization_.joints[k], balancing_[static_cast<std::size_t>(joint.a)],
-                                           balancing_[static_cast<std::size_t>(joint.b)]));
+    store6(b, load6(b) + constraint_change(linearization_.joints[k], balancing_[at(joint.a)], balancing_[at(joint.b)]));
   }
 }
 
@@ -89,20 +83,20 @@ void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     const Segment& segment = rod.segments[s];
     for (int u = side_start_[s]; u < side_start_[s + 1]; ++u) {
-      const Side& at_u = sides_[static_cast<std::size_t>(u)];
-      const JointSide side_u(linearization_.joints[static_cast<std::size_t>(at_u.joint)], at_u.is_b);
+      const JointEnd& at_u = sides_[at(u)];
+      const JointSide side_u(linearization_.joints[at(at_u.joint)], at_u.is_b);
       for (int v = side_start_[s]; v < side_start_[s + 1]; ++v, ++next) {
-        const Side& at_v = sides_[static_cast<std::size_t>(v)];
-        Block6& block = matrix_.blocks[static_cast<std::size_t>(next->block)];
+        const JointEnd& at_v = sides_[at(v)];
+        Block6& block = matrix_.blocks[at(next->block)];
         if (u == v) {
-          const Vector6 softness = inverse_dt2 * rod.joints[static_cast<std::size_t>(at_u.joint)].compliance;
+          const Vector6 softness = inverse_dt2 * rod.joints[at(at_u.joint)].compliance;
           if (next->first)
             add_square<true>(side_u, segment, softness.data(), block);
           else
             add_square<false>(side_u, segment, nullptr, block);
           continue;
         }
-        const JointSide side_v(linearization_.joints[static_cast<std::size_t>(at_v.joint)], at_v.is_b);
+        const JointSide side_v(linearization_.joints[at(at_v.joint)], at_v.is_b);
         if (next->first)
           add_product<true>(side_u, side_v, segment, block);
         else
@@ -118,8 +112,8 @@ void LinearSystem::displacements(const Rod& rod, const VectorX& delta_lambda, st
     const Joint& joint = rod.joints[k];
     Lane8 on_a, on_b;
     impulses(linearization_.joints[k], load6(delta_lambda.data() + 6 * k), on_a, on_b);
-    out[static_cast<std::size_t>(joint.a)] += on_a;
-    out[static_cast<std::size_t>(joint.b)] += on_b;
+    out[at(joint.a)] += on_a;
+    out[at(joint.b)] += on_b;
   }
   for (std::size_t s = 0; s < rod.segments.size(); ++s) out[s] = motion(rod.segments[s], out[s]);
 }
@@ -135,8 +129,7 @@ void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
 void LinearSystem::hold_forces(Rod& rod) const {
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Joint& joint = rod.joints[k];
-    const Lane4 delta = frame_turn(linearization_.joints[k], displacements_[static_cast<std::size_t>(joint.a)],
-                                   displacements_[static_cast<std::size_t>(joint.b)]);
+    const Lane4 delta = frame_turn(linearization_.joints[k], displacements_[at(joint.a)], displacements_[at(joint.b)]);
     double* lambda = rod.lambda.data() + 6 * k;
     const Triple<double> held = turned_back<double>({lambda[0], lambda[1], lambda[2]}, {delta[0], delta[1], delta[2]});
     lambda[0] = held.x;

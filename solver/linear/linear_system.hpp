@@ -55,11 +55,6 @@ class LinearSystem {
   double largest_rhs() const;
 
  private:
-  /// One end of a joint on a segment.
-  struct Side {
-    int joint;
-    bool is_b;
-  };
   /// The 6x6 product of two sides on one segment: its block, and whether it is the first contribution to it.
   struct Contribution {
     int block;
@@ -74,7 +69,7 @@ class LinearSystem {
   std::optional<ConstraintProduct> product_;
   VectorX rhs_;
   std::vector<int> side_start_;  ///< sides of segment i: side_start_[i] .. side_start_[i + 1]; none for static ones
-  std::vector<Side> sides_;
+  std::vector<JointEnd> sides_;
   std::vector<Contribution> contributions_;  ///< in the order in which assemble_matrix() visits them
   std::vector<Lane8> displacements_;
   double dt_ = 0, newton_residual_ = 0;

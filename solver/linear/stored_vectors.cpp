@@ -18,8 +18,6 @@ constexpr int parts = sizeof(Lane8) / sizeof(Lanes);
 inline const double* doubles(const Lane8* lanes) { return reinterpret_cast<const double*>(lanes); }
 inline double* doubles(Lane8* lanes) { return reinterpret_cast<double*>(lanes); }
 
-inline double sum(const Lane8& v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
-
 inline const Lanes* part_of(const Lane8* panel, int part) { return reinterpret_cast<const Lanes*>(panel) + part; }
 inline Lanes* part_of(Lane8* panel, int part) { return reinterpret_cast<Lanes*>(panel) + part; }
 
@@ -72,20 +70,19 @@ inline void add_product(const Block6& block, const Lane8& v, Lane8& p) {
 }  // namespace
 
 StoredVectors::StoredVectors(int unknowns, int count)
-    : unknowns_(static_cast<std::size_t>(unknowns)),
+    : unknowns_(at(unknowns)),
       count_(count),
       panel_count_(count > 8 && count % 8 <= most_singles ? count / 8 : (count + 7) / 8),
       single_count_(std::max(count - 8 * panel_count_, 0)),
-      entries_(static_cast<std::size_t>(panel_count_) * unknowns_),
-      singles_(static_cast<std::size_t>(single_count_) * unknowns_ / 6),
-      half_(static_cast<std::size_t>((8 * panel_count_ + single_count_) * panel_count_)),
+      entries_(at(panel_count_) * unknowns_),
+      singles_(at(single_count_) * unknowns_ / 6),
+      half_(at((8 * panel_count_ + single_count_) * panel_count_)),
       among_singles_(Eigen::Matrix3d::Zero()),
-      dots_(static_cast<std::size_t>(panel_count_) + 1) {}
+      dots_(at(panel_count_) + 1) {}
 
 void StoredVectors::set(int index, const VectorX& v) {
-  const int alone = index - 8 * panel_count_;
-  if (alone >= 0) {
-    for (std::size_t i = 0; i < unknowns_ / 6; ++i) single(alone)[i] = load6(v.data() + 6 * i);
+  if (const int number = index - 8 * panel_count_; number >= 0) {
+    for (std::size_t i = 0; i < unknowns_ / 6; ++i) single(number)[i] = load6(v.data() + 6 * i);
     return;
   }
   double* lane = doubles(panel(index / 8)) + index % 8;
@@ -94,9 +91,7 @@ void StoredVectors::set(int index, const VectorX& v) {
 
 template <int singles>
 void StoredVectors::pass(const BlockMatrix& a, const VectorX& b, int index, int part) {
-  const auto half = [&](int vector) -> Lanes& {
-    return *part_of(&half_[static_cast<std::size_t>(vector * panel_count_ + index)], part);
-  };
+  const auto half = [&](int vector) -> Lanes& { return *part_of(&half_[at(vector * panel_count_ + index)], part); };
   const Lane8* v = panel(index);
   Lanes own[8]{}, dot{}, with_single[singles + 1]{};
   Lane8 dot_single[singles + 1]{}, among[singles + 1][singles + 1]{};
@@ -104,12 +99,12 @@ void StoredVectors::pass(const BlockMatrix& a, const VectorX& b, int index, int 
     const Lanes* row = part_of(v + 6 * i, part);
     Lanes h[6]{};
     Lane8 h_single[singles + 1]{};
-    const Block6& diagonal = a.blocks[static_cast<std::size_t>(a.diagonal(i))];
+    const Block6& diagonal = a.blocks[at(a.diagonal(i))];
     add_half(diagonal, row, h);
 #pragma GCC unroll 3
     for (int s = 0; s < singles; ++s) add_half(diagonal, single(s)[i], h_single[s]);
     for (int k = a.row_begin(i); k < a.diagonal(i); ++k) {
-      const Block6& block = a.blocks[static_cast<std::size_t>(k)];
+      const Block6& block = a.blocks[at(k)];
       add_product(block, part_of(v + 6 * a.column(k), part), h);
 #pragma GCC unroll 3
       for (int s = 0; s < singles; ++s) add_product(block, single(s)[a.column(k)], h_single[s]);
@@ -140,7 +135,7 @@ void StoredVectors::pass(const BlockMatrix& a, const VectorX& b, int index, int 
   }
 #pragma GCC unroll 8
   for (int k = 0; k < 8; ++k) half(8 * index + k) = own[k];
-  *part_of(&dots_[static_cast<std::size_t>(index)], part) = dot;
+  *part_of(&dots_[at(index)], part) = dot;
 #pragma GCC unroll 3
   for (int s = 0; s < singles; ++s) {
     half(8 * panel_count_ + s) = with_single[s];
@@ -179,13 +174,13 @@ void StoredVectors::multiply(const BlockMatrix& a, const StoredVectors& v) {
       for (int part = 0; part < parts; ++part) {
         Lanes product[6]{};
         for (int k = a.row_begin(i); k < a.row_end(i); ++k)
-          add_product(a.blocks[static_cast<std::size_t>(k)], part_of(v.panel(p) + 6 * a.column(k), part), product);
+          add_product(a.blocks[at(k)], part_of(v.panel(p) + 6 * a.column(k), part), product);
         for (int r = 0; r < 6; ++r) *part_of(panel(p) + 6 * i + r, part) = product[r];
       }
     for (int s = 0; s < single_count_; ++s) {
       Lane8 product{};
       for (int k = a.row_begin(i); k < a.row_end(i); ++k)
-        add_product(a.blocks[static_cast<std::size_t>(k)], v.single(s)[a.column(k)], product);
+        add_product(a.blocks[at(k)], v.single(s)[a.column(k)], product);
       single(s)[i] = product;
     }
   }
@@ -197,7 +192,7 @@ void StoredVectors::dots(const double* x, VectorX& c) {
     for (std::size_t i = 0; i < unknowns_; i += 6)
 #pragma GCC unroll 6
       for (std::size_t r = 0; r < 6; ++r) sums[r] += x[i + r] * panel(p)[i + r];
-    dots_[static_cast<std::size_t>(p)] = (sums[0] + sums[1]) + (sums[2] + sums[3]) + (sums[4] + sums[5]);
+    dots_[at(p)] = (sums[0] + sums[1]) + (sums[2] + sums[3]) + (sums[4] + sums[5]);
   }
   for (int s = 0; s < single_count_; ++s) {
     Lane8 sums{};
@@ -212,7 +207,7 @@ void StoredVectors::combined(const VectorX& c, Take take) {
   std::fill(dots_.begin(), dots_.end(), Lane8{});
   std::copy_n(c.data(), count_, doubles(dots_.data()));
   const Lane8* factors = dots_.data();
-  const int rows = static_cast<int>(unknowns_ / 6), panels = panel_count_, alone = single_count_;
+  const int rows = static_cast<int>(unknowns_ / 6), panels = panel_count_, singles = single_count_;
   for (int i = 0; i < rows; ++i) {
     Lane8 sums[6]{};
     for (int p = 0; p < panels; ++p) {
@@ -222,7 +217,7 @@ void StoredVectors::combined(const VectorX& c, Take take) {
     }
     Lane8 of_row = sum_lanes(sums);
     const double* factor = doubles(factors + panels);
-    for (int s = 0; s < alone; ++s) of_row += factor[s] * singles_[static_cast<std::size_t>(s * rows + i)];
+    for (int s = 0; s < singles; ++s) of_row += factor[s] * singles_[at(s * rows + i)];
     take(i, of_row);
   }
 }

@@ -35,10 +35,10 @@ class StoredVectors {
   void subtract(const VectorX& c, double* x);
 
  private:
-  const Lane8* panel(int index) const { return entries_.data() + static_cast<std::size_t>(index) * unknowns_; }
-  Lane8* panel(int index) { return entries_.data() + static_cast<std::size_t>(index) * unknowns_; }
-  const Lane8* single(int index) const { return singles_.data() + static_cast<std::size_t>(index) * unknowns_ / 6; }
-  Lane8* single(int index) { return singles_.data() + static_cast<std::size_t>(index) * unknowns_ / 6; }
+  const Lane8* panel(int index) const { return entries_.data() + at(index) * unknowns_; }
+  Lane8* panel(int index) { return entries_.data() + at(index) * unknowns_; }
+  const Lane8* single(int index) const { return singles_.data() + at(index) * unknowns_ / 6; }
+  Lane8* single(int index) { return singles_.data() + at(index) * unknowns_ / 6; }
 
   /// Sets the rows of half_ and dots_ of one panel or a part of it, and of all single vectors.
   template <int singles>

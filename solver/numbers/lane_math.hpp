@@ -66,6 +66,7 @@ inline LaneQuaternion select(const LaneMask& where, const LaneQuaternion& a, con
 }
 
 inline Lane all_lanes(double value) { return Lane{} + value; }
+inline LaneVector all_lanes(const Vector3& v) { return {all_lanes(v.x()), all_lanes(v.y()), all_lanes(v.z())}; }
 
 inline Lane absolute(const Lane& value) { return value < 0 ? -value : value; }
 

@@ -81,8 +81,7 @@ inline Registers<size> run(const Lane (&v)[size]) {
 template <int size, class Record>
 inline void store(const Lane (&v)[size], Record* to, int count) {
   const Registers<size> records = run(v);
-  std::memcpy(reinterpret_cast<double*>(to), &records,
-              static_cast<std::size_t>(std::min(count, W)) * size * sizeof(double));
+  std::memcpy(reinterpret_cast<double*>(to), &records, at(std::min(count, W)) * size * sizeof(double));
 }
 
 }  // namespace lane_records

@@ -28,7 +28,7 @@ using Quaternion = Eigen::Quaterniond;
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// An index of a standard container; segments, joints and steps are counted by int.
+/// An index of a standard container; segments, joints and steps have numbers of type int.
 constexpr std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 }  // namespace rodsweep

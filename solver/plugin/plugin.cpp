@@ -97,7 +97,8 @@ void PluginInstance::throw_interrupted() const {
   throw_interruption(plugin_.name() + (text.empty() ? text : " (" + text + ')'));
 }
 
-rodsweep_system plugin_system(const Rod& rod, const LinearSystem& system, const SolvePosition& at) {
+/// What a plug-in is told of a system. It points into the arguments.
+static rodsweep_system plugin_system(const Rod& rod, const LinearSystem& system, const SolvePosition& at) {
   const BlockMatrix& a = system.matrix();
   return {at.rod,
           at.step,
@@ -112,6 +113,58 @@ rodsweep_system plugin_system(const Rod& rod, const LinearSystem& system, const 
           rod.lambda.data(),
           rod.position.front().data(),
           rod.orientation.front().coeffs().data()};
+}
+
+PluginGuess::PluginGuess(const PluginSource& source, const Scene& scene)
+    : scene_(scene), instance_(source, scene.rods.data(), static_cast<int>(scene.rods.size())) {
+  if (!instance_.functions().propose) throw instance_.error("lacks propose");
+}
+
+rodsweep_system PluginGuess::view(const LinearSystem& system, const SolvePosition& at) const {
+  return plugin_system(scene_.rods[static_cast<std::size_t>(at.rod)], system, at);
+}
+
+Proposal PluginGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
+  const rodsweep_system seen = view(system, at);
+  int products = 0;
+  const bool nonzero = instance_.call(instance_.functions().propose, &seen, x0.data(), &products) > 0;
+  if (!nonzero) x0.setZero();
+  if (!x0.allFinite()) throw instance_.error("proposed a guess that is not finite");
+  if (products < 0 || products > RODSWEEP_MOST_PRODUCTS)
+    throw instance_.error("counted " + std::to_string(products) + " products with A; must be from 0 to " +
+                          std::to_string(RODSWEEP_MOST_PRODUCTS));
+  return {nonzero, products};
+}
+
+void PluginGuess::accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
+  const auto accept = instance_.functions().accept;
+  if (!accept) return;
+  const rodsweep_system seen = view(system, at);
+  instance_.call(accept, &seen, solution.data());
+}
+
+void PluginGuess::accept_total(int rod, int step, const VectorX& total) {
+  if (const auto accept_total = instance_.functions().accept_total)
+    instance_.call(accept_total, rod, step, total.data());
+}
+
+PluginPreconditioner::PluginPreconditioner(const PluginSource& source, const Rod& rod, int index,
+                                           const LinearSystem& system)
+    : rod_(rod), index_(index), system_(system), instance_(source, &rod, 1) {
+  if (!instance_.functions().set_up || !instance_.functions().apply) throw instance_.error("lacks set_up or apply");
+}
+
+bool PluginPreconditioner::set_up(const BlockMatrix&) {
+  const rodsweep_system system = plugin_system(rod_, system_, {-1, -1, index_});
+  return instance_.call(instance_.functions().set_up, &system) > 0;
+}
+
+void PluginPreconditioner::apply(const double* r, double* z) {
+  const Eigen::Index size = 6 * rod_.joint_count();
+  std::fill_n(z, size, 0.0);  // a library that writes only a part gives the same each time
+  instance_.call(instance_.functions().apply, r, z);
+  if (!VectorX::Map(z, size).allFinite() && VectorX::Map(r, size).allFinite())
+    throw instance_.error("apply() gave a vector that is not finite");
 }
 
 }  // namespace rodsweep

@@ -1,4 +1,4 @@
-// A shared library with guesses and preconditioners of the user's (plugin.h), and an instance of it. PluginError: the
+// A shared library with guesses and preconditioners of the user's (plugin.h), an instance of it, and both of these. PluginError: the
 // library cannot be loaded, has another version, lacks a function or reports an error. A call whose result is no longer
 // wanted ends in InterruptedComputation, with the library and its text.
 #pragma once
@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "solver/cg/block_preconditioner.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/plugin/plugin.h"
 #include "solver/plugin/printable.hpp"
@@ -82,7 +83,36 @@ class PluginInstance {
   std::unique_ptr<void, Destroy> instance_;
 };
 
-/// What a plug-in is told of a system. It points into the arguments.
-rodsweep_system plugin_system(const Rod& rod, const LinearSystem& system, const SolvePosition& at);
+/// An initial guess from a shared library. Throws PluginError.
+class PluginGuess : public InitialGuess {
+ public:
+  PluginGuess(const PluginSource& source, const Scene& scene);
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
+  void accept_total(int rod, int step, const VectorX& total) override;
+
+ private:
+  rodsweep_system view(const LinearSystem& system, const SolvePosition& at) const;
+
+  const Scene& scene_;
+  PluginInstance instance_;
+};
+
+/// A preconditioner of CG from a shared library. Throws PluginError.
+class PluginPreconditioner : public BlockPreconditioner {
+ public:
+  /// `rod`, which is `index` in its scene, and `system` must outlive it.
+  PluginPreconditioner(const PluginSource& source, const Rod& rod, int index, const LinearSystem& system);
+
+  /// For the system as it is assembled, whose matrix is the argument.
+  bool set_up(const BlockMatrix&) override;
+  void apply(const double* r, double* z) override;
+
+ private:
+  const Rod& rod_;
+  int index_;
+  const LinearSystem& system_;
+  PluginInstance instance_;
+};
 
 }  // namespace rodsweep

@@ -27,13 +27,13 @@ class JointWays {
   /// `rod` must outlive it.
   explicit JointWays(const Rod& rod) : rod_(rod), joints_of_(rod.segments.size()), ways_(rod.joints.size()) {
     for (int k = 0; k < rod.joint_count(); ++k) {
-      const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
-      joints_of_[static_cast<std::size_t>(joint.a)].push_back({k, joint.arm_a});
-      joints_of_[static_cast<std::size_t>(joint.b)].push_back({k, joint.arm_b});
+      const Joint& joint = rod.joints[at(k)];
+      joints_of_[at(joint.a)].push_back({k, joint.arm_a});
+      joints_of_[at(joint.b)].push_back({k, joint.arm_b});
     }
   }
 
-  const std::vector<Meeting>& joints_of(int segment) const { return joints_of_[static_cast<std::size_t>(segment)]; }
+  const std::vector<Meeting>& joints_of(int segment) const { return joints_of_[at(segment)]; }
 
   /// Calls visit(joint, way) for these joints and all with a way from them below `most_m`, the nearest first. Ways lead
   /// over segments with passes(segment).
@@ -42,7 +42,7 @@ class JointWays {
     using Next = std::tuple<double, int, int>;  // length, joints, joint
     std::priority_queue<Next, std::vector<Next>, std::greater<>> next;
     const auto reach = [&](int k, double length_m, int joints) {
-      Way& way = ways_[static_cast<std::size_t>(k)];
+      Way& way = ways_[at(k)];
       if (!(length_m < way.length_m)) return;
       if (way.joints == 0) reached_.push_back(k);
       way = {length_m, joints};
@@ -52,10 +52,10 @@ class JointWays {
     while (!next.empty()) {
       const auto [length_m, joints, k] = next.top();
       next.pop();
-      const Way way = ways_[static_cast<std::size_t>(k)];
+      const Way way = ways_[at(k)];
       if (length_m > way.length_m) continue;
       visit(k, way);
-      const Joint& joint = rod_.joints[static_cast<std::size_t>(k)];
+      const Joint& joint = rod_.joints[at(k)];
       for (const auto& [segment, arm] : {std::pair(joint.a, joint.arm_a), std::pair(joint.b, joint.arm_b)}) {
         if (!passes(segment)) continue;
         for (const Meeting& at : joints_of(segment))
@@ -63,7 +63,7 @@ class JointWays {
             reach(at.joint, there, way.joints + 1);
       }
     }
-    for (const int k : reached_) ways_[static_cast<std::size_t>(k)] = {};
+    for (const int k : reached_) ways_[at(k)] = {};
     reached_.clear();
   }
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "solver/numbers/lane_records.hpp"
-#include "solver/numbers/lane_vectors.hpp"
+#include "solver/numbers/lanes.hpp"
 
 namespace rodsweep {
 namespace {
@@ -99,14 +99,10 @@ inline void write(const JacobianParts<T>& parts, JointJacobian& to) {
 inline Triple<double> numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 inline Quad<double> numbers(const Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
-inline const Quaternion& orientation_of_a(const Rod& rod, const Joint& joint) {
-  return rod.orientation[static_cast<std::size_t>(joint.a)];
-}
-inline const Quaternion& orientation_of_b(const Rod& rod, const Joint& joint) {
-  return rod.orientation[static_cast<std::size_t>(joint.b)];
-}
+inline const Quaternion& orientation_of_a(const Rod& rod, const Joint& joint) { return rod.orientation[at(joint.a)]; }
+inline const Quaternion& orientation_of_b(const Rod& rod, const Joint& joint) { return rod.orientation[at(joint.b)]; }
 inline Vector3 apart(const Rod& rod, const Joint& joint) {
-  return rod.position[static_cast<std::size_t>(joint.a)] - rod.position[static_cast<std::size_t>(joint.b)];
+  return rod.position[at(joint.a)] - rod.position[at(joint.b)];
 }
 
 struct SingleShape : JointShape<double> {

@@ -54,7 +54,7 @@ Joint make_joint(const JointSpec& j, const std::vector<SegmentSpec>& segments, i
   if (j.a < 0 || j.a >= n) refuse("joint", index, "segment a", j.a, "from 0 to " + std::to_string(n - 1));
   if (j.b < 0 || j.b >= n) refuse("joint", index, "segment b", j.b, "from 0 to " + std::to_string(n - 1));
   if (j.a == j.b) refuse("joint", index, "segment b", j.b, "different from segment a");
-  const SegmentSpec &a = segments[static_cast<std::size_t>(j.a)], &b = segments[static_cast<std::size_t>(j.b)];
+  const SegmentSpec &a = segments[at(j.a)], &b = segments[at(j.b)];
   Joint out{j.a,
             j.b,
             j.arm_a_m,
@@ -136,11 +136,19 @@ Vector6 Rod::outer_impulse(std::size_t segment) const {
   return out;
 }
 
+std::vector<std::vector<JointEnd>> joints_by_segment(const Rod& rod) {
+  std::vector<std::vector<JointEnd>> out(rod.segments.size());
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    out[at(rod.joints[at(k)].a)].push_back({k, false});
+    out[at(rod.joints[at(k)].b)].push_back({k, true});
+  }
+  return out;
+}
+
 void refuse_static_joints(const Rod& rod) {
   for (int k = 0; k < rod.joint_count(); ++k) {
-    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
-    if (rod.segments[static_cast<std::size_t>(joint.a)].is_static &&
-        rod.segments[static_cast<std::size_t>(joint.b)].is_static)
+    const Joint& joint = rod.joints[at(k)];
+    if (rod.segments[at(joint.a)].is_static && rod.segments[at(joint.b)].is_static)
       throw SceneError("joint " + std::to_string(k) + " joins two static segments; remove it or free one of them");
   }
 }

@@ -105,6 +105,15 @@ class Rod {
   Vector6 outer_impulse(std::size_t segment) const;  ///< of contacts and of those torques
 };
 
+/// One end of a joint, on a segment.
+struct JointEnd {
+  int joint;
+  bool is_b;
+};
+
+/// Of every segment the joints on it, in their order.
+std::vector<std::vector<JointEnd>> joints_by_segment(const Rod& rod);
+
 /// Throws SceneError for a joint between two static segments.
 void refuse_static_joints(const Rod& rod);
 

@@ -44,7 +44,7 @@ class Places {
 
   int number_of(const Vector3& point) {
     if (const int found = find(point); found >= 0) {
-      const auto i = static_cast<std::size_t>(found);
+      const auto i = at(found);
       ++count_[i];
       offset_[i] += point - points_[i];
       return found;
@@ -62,18 +62,18 @@ class Places {
   }
   int find(const Vector3& point) const {
     const Cell centre = cell(point);
-    Cell at{};
-    for (at[0] = centre[0] - 1; at[0] <= centre[0] + 1; ++at[0])
-      for (at[1] = centre[1] - 1; at[1] <= centre[1] + 1; ++at[1])
-        for (at[2] = centre[2] - 1; at[2] <= centre[2] + 1; ++at[2])
-          if (const auto found = cells_.find(at); found != cells_.end())
+    Cell near{};
+    for (near[0] = centre[0] - 1; near[0] <= centre[0] + 1; ++near[0])
+      for (near[1] = centre[1] - 1; near[1] <= centre[1] + 1; ++near[1])
+        for (near[2] = centre[2] - 1; near[2] <= centre[2] + 1; ++near[2])
+          if (const auto found = cells_.find(near); found != cells_.end())
             for (const int number : found->second)
-              if ((points_[static_cast<std::size_t>(number)] - point).norm() <= tolerance_) return number;
+              if ((points_[at(number)] - point).norm() <= tolerance_) return number;
     return -1;
   }
   std::size_t count() const { return points_.size(); }
   Vector3 middle(int number) const {
-    const auto i = static_cast<std::size_t>(number);
+    const auto i = at(number);
     return points_[i] + offset_[i] / count_[i];
   }
 
@@ -188,18 +188,18 @@ class Cutter {
     Sample here = samples_[first];
     for (int piece = 1; piece <= pieces; ++piece) {
       const Sample there =
-          piece == pieces ? samples_[last] : at(arc_[first] + length(first, last) * piece / pieces, first, last);
+          piece == pieces ? samples_[last] : sample(arc_[first] + length(first, last) * piece / pieces, first, last);
       const int next = piece == pieces ? to : new_node(there.at);
       const int edge = static_cast<int>(graph_.edges.size());
       graph_.edges.push_back({curve_, node, next, here.at, there.at, here.radius, there.radius});
-      for (const int end : {node, next}) graph_.nodes[static_cast<std::size_t>(end)].edges.push_back(edge);
+      for (const int end : {node, next}) graph_.nodes[at(end)].edges.push_back(edge);
       node = next;
       here = there;
     }
   }
 
  private:
-  Sample at(double arc, std::size_t first, std::size_t last) const {
+  Sample sample(double arc, std::size_t first, std::size_t last) const {
     const auto next = std::upper_bound(arc_.begin() + static_cast<std::ptrdiff_t>(first) + 1,
                                        arc_.begin() + static_cast<std::ptrdiff_t>(last), arc);
     const auto i = static_cast<std::size_t>(next - arc_.begin());
@@ -228,13 +228,12 @@ void number_components(CurveGraph& graph) {
     std::vector<int> next{static_cast<int>(start)};
     graph.component[start] = graph.components;
     while (!next.empty()) {
-      const auto node = static_cast<std::size_t>(next.back());
+      const auto node = at(next.back());
       next.pop_back();
       for (const int e : graph.nodes[node].edges)
-        for (const int end :
-             {graph.edges[static_cast<std::size_t>(e)].from, graph.edges[static_cast<std::size_t>(e)].to})
-          if (graph.component[static_cast<std::size_t>(end)] < 0) {
-            graph.component[static_cast<std::size_t>(end)] = graph.components;
+        for (const int end : {graph.edges[at(e)].from, graph.edges[at(e)].to})
+          if (graph.component[at(end)] < 0) {
+            graph.component[at(end)] = graph.components;
             next.push_back(end);
           }
     }
@@ -298,7 +297,7 @@ CurveGraph cut(std::vector<Curve> curves, double radius, const CurveCut& how) {
   for (const std::vector<int>& own : numbers)
     for (std::size_t i = 0; i < own.size(); ++i) {
       const bool end = i == 0 || i + 1 == own.size();
-      const auto place = static_cast<std::size_t>(own[i]);
+      const auto place = at(own[i]);
       if (end || branches[place] > 0) is_node[place] = 1;
       branches[place] += end ? 1 : 2;
     }
@@ -306,13 +305,13 @@ CurveGraph cut(std::vector<Curve> curves, double radius, const CurveCut& how) {
     const int place = places.find(point);
     if (place < 0)
       throw SceneError("held_at_m has " + text_of(point) + ", which is no point of a curve (within join_m)");
-    is_node[static_cast<std::size_t>(place)] = held[static_cast<std::size_t>(place)] = 1;
+    is_node[at(place)] = held[at(place)] = 1;
   }
 
   CurveGraph graph;
   std::vector<int> node_of(places.count(), -1);
   const auto add_node = [&](int place, bool is_held) {
-    node_of[static_cast<std::size_t>(place)] = static_cast<int>(graph.nodes.size());
+    node_of[at(place)] = static_cast<int>(graph.nodes.size());
     graph.nodes.push_back({places.middle(place), is_held, {}});
   };
   for (std::size_t place = 0; place < places.count(); ++place) {
@@ -320,26 +319,25 @@ CurveGraph cut(std::vector<Curve> curves, double radius, const CurveCut& how) {
     const bool end = how.held == HeldPoints::ends && branches[place] == 1;
     add_node(static_cast<int>(place), held[place] != 0 || end);
   }
-  const auto meets = [&](int place) { return branches[static_cast<std::size_t>(place)] > 2; };
+  const auto meets = [&](int place) { return branches[at(place)] > 2; };
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const Line line = line_of(curves[c], radius, how.interpolation);
     Cutter cutter(graph, line, static_cast<int>(c));
     std::size_t first = 0;
     for (std::size_t i = 1; i < line.samples.size(); ++i) {
       if (line.samples[i].given < 0) continue;
-      const int from = numbers[c][static_cast<std::size_t>(line.samples[first].given)];
-      const int to = numbers[c][static_cast<std::size_t>(line.samples[i].given)];
+      const int from = numbers[c][at(line.samples[first].given)];
+      const int to = numbers[c][at(line.samples[i].given)];
       const bool drawn = how.segment_m <= 0;
       const bool is_corner = drawn || how.interpolation == Interpolation::linear;  // every given point ends an edge
-      if (!is_corner && !is_node[static_cast<std::size_t>(to)]) continue;
+      if (!is_corner && !is_node[at(to)]) continue;
       for (const int place : {from, to})
-        if (node_of[static_cast<std::size_t>(place)] < 0) add_node(place, false);
+        if (node_of[at(place)] < 0) add_node(place, false);
       const double pieces = drawn ? 1 : std::ceil(cutter.length(first, i) / how.segment_m - 1e-9);
       constexpr double most = 1e7;
       require(pieces <= most, "the number of segments of a curve", pieces, "at most 1e7; segment_m must be greater");
       const int least = from == to ? 3 : meets(from) && meets(to) ? 2 : 1;
-      cutter.cut(first, i, node_of[static_cast<std::size_t>(from)], node_of[static_cast<std::size_t>(to)],
-                 std::max(least, static_cast<int>(pieces)));
+      cutter.cut(first, i, node_of[at(from)], node_of[at(to)], std::max(least, static_cast<int>(pieces)));
       first = i;
     }
   }

@@ -179,11 +179,7 @@ class Builder {
       const Quaternion twist(rest.w(), 0, 0, rest.z());
       rest = twist.norm() < 1e-12 ? Quaternion::Identity() : twist.normalized();  // no twist if the curve turns back
     }
-    JointSpec joint;
-    joint.a = number_[at(a.edge)];
-    joint.b = number_[at(b.edge)];
-    joint.arm_a_m = arm(a);
-    joint.arm_b_m = arm(b);
+    JointSpec joint{number_[at(a.edge)], number_[at(b.edge)], arm(a), arm(b)};
     const Series series = in_series(of_a, of_b, rest);
     joint.rest = (outwards(a) * rest * inwards(b).conjugate()).normalized();
     joint.frame = (outwards(a) * series.frame).normalized();
@@ -193,10 +189,7 @@ class Builder {
 
   JointSpec clamped(int wall, const SegmentSpec& point, const End& end, double force_n) const {
     const Quaternion rest = (point.orientation.conjugate() * backward(end)).normalized();
-    JointSpec joint;
-    joint.a = wall;
-    joint.b = number_[at(end.edge)];
-    joint.arm_b_m = arm(end);
+    JointSpec joint{wall, number_[at(end.edge)], Vector3::Zero(), arm(end)};
     const Series series = in_series(Softness(), half(end), rest);
     joint.rest = (rest * inwards(end).conjugate()).normalized();
     joint.frame = series.frame;

@@ -77,10 +77,7 @@ Layout layout(const Lattice& p) {
 }
 
 bool is_held(const Lattice& p, const LatticeNode& last, const LatticeNode& at) {
-  const auto at_end = [&](int axis) {
-    const auto k = static_cast<std::size_t>(axis);
-    return at[k] == 0 || at[k] == last[k];
-  };
+  const auto at_end = [&](std::size_t axis) { return at[axis] == 0 || at[axis] == last[axis]; };
   switch (p.held) {
     case Held::side: return at[0] == 0;
     case Held::corners: return at_end(0) && at_end(1) && at_end(2);
@@ -106,9 +103,7 @@ void connect(const Lattice& p, const Layout& layout, const Held& held, const Joi
       if (is_static.back()) held(s);
       if (node) nodes[at].push_back(s);
     }
-  const auto moves = [&](int a, int b) {
-    return !(is_static[static_cast<std::size_t>(a)] && is_static[static_cast<std::size_t>(b)]);
-  };
+  const auto moves = [&](int a, int b) { return !(is_static[at(a)] && is_static[at(b)]); };
   int s = 0;
   for (const LatticeLine& line : layout.lines)
     for (int i = 0; i < segments_of(p, line); ++i, ++s)
@@ -165,10 +160,10 @@ void Lattice::build(Scene& scene) const {
   const double shifting = node_stiffness * rod.shear_n / (2 * radius_m);
   std::vector<JointSpec> joints;
   connect(
-      *this, all, [&](int s) { segments_[static_cast<std::size_t>(s)].is_static = true; },
+      *this, all, [&](int s) { segments_[at(s)].is_static = true; },
       [&](int a, int b) { joints.push_back(joint_between(segments_, a, b, *this, force)); },
       [&](int a, int b) {
-        const double length = segments_[static_cast<std::size_t>(a)].length_m;
+        const double length = segments_[at(a)].length_m;
         const double soft =
             stretch == Stretch::physical ? 1 / (shifting * length * length) : stretch_compliance(length, force, *this);
         joints.push_back(crossing_between(a, b, turning, soft));

@@ -100,7 +100,7 @@ void Net::build(Scene& scene) const {
   std::vector<JointSpec> joints;
   for (const std::vector<int>& line : rods)
     for (std::size_t i = 1; i < line.size(); ++i) {
-      const SegmentSpec &a = all[static_cast<std::size_t>(line[i - 1])], &b = all[static_cast<std::size_t>(line[i])];
+      const SegmentSpec &a = all[at(line[i - 1])], &b = all[at(line[i])];
       joints.push_back(joint_between(all, line[i - 1], line[i], *this, force));
       if (a.orientation.coeffs() == b.orientation.coeffs()) continue;
       // The axes of stiffness are those of the rod, not of the point.

@@ -11,15 +11,15 @@ namespace {
 MovingClamp tip_clamp(const TipMotion& motion, const SegmentSpec& last, int segment) {
   const Vector3 half(0, 0, last.length_m / 2);
   const Quaternion at_first = last.orientation;
+  const Schedule progress{{0, motion.duration_s}, {0, 1}, true};
   return {0, segment, [=, end = Vector3(last.position_m + at_first * half)](double time_s) {
-            const double u = std::min(time_s / motion.duration_s, 1.0);
-            const double done = u * u * u * (10 - 15 * u + 6 * u * u);
+            const double done = progress.at(time_s);
             const Quaternion orientation = (motion.rotation(done) * at_first).normalized();
             return Pose{end + done * motion.displacement_m - orientation * half, orientation};
           }};
 }
 
-/// Throws SceneError if a rod between two ends cannot follow the motion of its tip (see reach.hpp).
+/// Throws SceneError if a rod between two ends cannot follow the motion of its tip (see check_reach() of prescribed.cpp).
 template <class RodScene>
 void check_tip_motion(const RodScene& p) {
   if (!p.tip_motion || p.clamp == Clamp::free) return;
@@ -53,6 +53,13 @@ double prescribed_force(const std::vector<SegmentSpec>& segments, const RodParam
   for (const SegmentSpec& segment : segments) length += segment.length_m;
   const Section rod = stiffness(p);
   return 16 * pi * pi * std::max(rod.bending_x_nm2, rod.bending_y_nm2) / (length * length);
+}
+
+template <class RodScene>
+std::vector<Vector3> vertices_of(const RodScene& p) {
+  std::vector<Vector3> vertices;
+  for (int i = 0; i <= p.segments; ++i) vertices.push_back(p.vertex_m(i));
+  return vertices;
 }
 
 /// A rod whose joints lie on `vertices`, with what holds, loads or moves its tip. `height`: the direction of each
@@ -110,10 +117,8 @@ void BendingRod::check() const {
 
 void BendingRod::build(Scene& scene) const {
   const Vector3 along = vertex_m(1);
-  std::vector<Vector3> vertices;
-  for (int i = 0; i <= segments; ++i) vertices.push_back(vertex_m(i));
   add_rod(
-      vertices, [&](double) { return Vector3(-along.y(), along.x(), 0); }, *this, scene);
+      vertices_of(*this), [&](double) { return Vector3(-along.y(), along.x(), 0); }, *this, scene);
 }
 
 double Helix::turned(double joint) const { return 2 * pi * windings * joint / segments; }
@@ -129,10 +134,8 @@ void Helix::check() const {
 }
 
 void Helix::build(Scene& scene) const {
-  std::vector<Vector3> vertices;
-  for (int i = 0; i <= segments; ++i) vertices.push_back(vertex_m(i));
   const auto outwards = [this](double joint) { return Vector3(std::cos(turned(joint)), 0, std::sin(turned(joint))); };
-  add_rod(vertices, outwards, *this, scene);
+  add_rod(vertices_of(*this), outwards, *this, scene);
 }
 
 }  // namespace rodsweep

@@ -1,6 +1,7 @@
 #include "solver/scene/prescribed.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -8,7 +9,7 @@
 #include <utility>
 
 #include "solver/numbers/rotation.hpp"
-#include "solver/scene/reach.hpp"
+#include "solver/rod/joint_ways.hpp"
 #include "solver/scene/scene_parts.hpp"
 
 namespace rodsweep {
@@ -22,7 +23,7 @@ struct AxisPoint {
 };
 
 const Segment& segment(const Scene& scene, const AxisPoint& place) {
-  return scene.rods[static_cast<std::size_t>(place.rod)].segments[static_cast<std::size_t>(place.segment)];
+  return scene.rods[at(place.rod)].segments[at(place.segment)];
 }
 
 /// Finds the segments at points of a scene.
@@ -148,6 +149,64 @@ Vector3 centre_of_turns(const std::vector<PrescribedMotion>& motions, double rou
                    "; must be one point or points of one axis, because the order of such turns would matter");
 }
 
+/// How a held segment of a rod moves.
+struct ClampPath {
+  int segment;
+  std::function<Pose(double time_s)> pose;
+  std::function<Vector3(double time_s)> turned_deg;  ///< rotation vector, also of many turns
+};
+
+const Vector3& arm(const Joint& joint, int segment) { return joint.a == segment ? joint.arm_a : joint.arm_b; }
+
+/// Throws SceneError if at one of these times two clamps of a rod are farther apart than the rod between them is long,
+/// unless it `stretches`; or if they are turned against each other by more than a right angle for each joint between
+/// them: there a joint bears the most, and beyond half a turn it slips by a turn.
+void check_reach(const Rod& rod, const std::vector<ClampPath>& paths, const std::vector<double>& times_s,
+                 bool stretches) {
+  constexpr double tolerance = 1e-5, most_deg = 90;
+  JointWays ways(rod);
+  std::map<int, const ClampPath*> path_of;
+  for (const ClampPath& path : paths) path_of[path.segment] = &path;
+  const auto pose = [&](int segment, double time_s) {
+    const auto s = at(segment);
+    const auto path = path_of.find(segment);
+    return path == path_of.end() ? Pose{rod.position[s], rod.orientation[s]} : path->second->pose(time_s);
+  };
+  const auto turned_deg = [&](int segment, double time_s) -> Vector3 {
+    const auto path = path_of.find(segment);
+    return path == path_of.end() ? Vector3::Zero() : path->second->turned_deg(time_s);
+  };
+  const auto check = [&](const Joint& first, int a, const Joint& last, int b, const JointWays::Way& way) {
+    const auto clamps = [&] {
+      return "motions of the clamps at " + text_of(rod.position[at(a)]) + " and " + text_of(rod.position[at(b)]);
+    };
+    for (const double time_s : times_s) {
+      const Pose one = pose(a, time_s), other = pose(b, time_s);
+      const double apart =
+          (one.position + one.orientation * arm(first, a) - other.position - other.orientation * arm(last, b)).norm();
+      if (!stretches && apart > (1 + tolerance) * way.length_m)
+        throw SceneError(clamps() + " pull the rod between them to " + std::to_string(apart) +
+                         " m; must be at most its length, " + std::to_string(way.length_m) +
+                         " m, or \"stretch\" must be \"physical\"");
+      const double turned = (turned_deg(a, time_s) - turned_deg(b, time_s)).norm();
+      if (turned > (1 + tolerance) * most_deg * way.joints)
+        throw SceneError(clamps() + " turn them against each other by " + std::to_string(turned) +
+                         " degrees; must be at most 90 for each of the " + std::to_string(way.joints) +
+                         " joints between them: use more segments");
+    }
+  };
+  const auto joint = [&rod](int k) -> const Joint& { return rod.joints[at(k)]; };
+  const auto is_static = [&rod](int segment) { return rod.segments[at(segment)].is_static; };
+  for (const ClampPath& path : paths)
+    for (const JointWays::Meeting& first : ways.joints_of(path.segment))
+      ways.from(
+          {first}, std::numeric_limits<double>::infinity(), [&](int segment) { return !is_static(segment); },
+          [&](int k, const JointWays::Way& way) {
+            for (const int end : {joint(k).a, joint(k).b})
+              if (end != path.segment && is_static(end)) check(joint(first.joint), path.segment, joint(k), end, way);
+          });
+}
+
 void add(const std::vector<PrescribedMotion>& motions, const SegmentFinder& places, bool stretches, Scene& scene) {
   if (motions.empty()) return;
   std::map<std::pair<int, int>, Moved> moved;
@@ -160,19 +219,43 @@ void add(const std::vector<PrescribedMotion>& motions, const SegmentFinder& plac
     }
   std::map<int, std::vector<ClampPath>> paths;  // of each rod
   for (auto& [place, own] : moved) {
-    const Rod& rod = scene.rods[static_cast<std::size_t>(place.first)];
-    const auto s = static_cast<std::size_t>(place.second);
+    const Rod& rod = scene.rods[at(place.first)];
+    const auto s = at(place.second);
     own.about = centre_of_turns(own.motions, places.rounding_m());
     own.position = rod.position[s];
     own.orientation = rod.orientation[s];
     scene.clamps.push_back({place.first, place.second, own});
     paths[place.first].push_back({place.second, own, [own = own](double time_s) { return own.turned_deg(time_s); }});
   }
-  for (const auto& [rod, own] : paths)
-    check_reach(scene.rods[static_cast<std::size_t>(rod)], own, times_of(motions), stretches);
+  for (const auto& [rod, own] : paths) check_reach(scene.rods[at(rod)], own, times_of(motions), stretches);
 }
 
 }  // namespace
+
+double Schedule::at(double time_s) const {
+  if (times_s.empty()) return 1;
+  const auto next = std::upper_bound(times_s.begin(), times_s.end(), time_s);
+  if (next == times_s.begin()) return factors.front();
+  if (next == times_s.end()) return factors.back();
+  const auto i = static_cast<std::size_t>(next - times_s.begin());
+  const double u = (time_s - times_s[i - 1]) / (times_s[i] - times_s[i - 1]);
+  const double done = smooth ? u * u * u * (10 - 15 * u + 6 * u * u) : u;
+  return factors[i - 1] + done * (factors[i] - factors[i - 1]);
+}
+
+double Schedule::largest() const {
+  double most = factors.empty() ? 1 : 0;
+  for (const double factor : factors) most = std::max(most, std::abs(factor));
+  return most;
+}
+
+void Schedule::check() const {
+  if (times_s.size() != factors.size())
+    throw SceneError("times_s has " + std::to_string(times_s.size()) + " values, factors " +
+                     std::to_string(factors.size()) + "; must be as many");
+  for (std::size_t i = 1; i < times_s.size(); ++i)
+    require(times_s[i] > times_s[i - 1], "a value of times_s", times_s[i], "greater than the one before");
+}
 
 void Prescribed::check() const {
   const auto check_all = [](const char* name, const auto& items, const auto& check) {

@@ -7,11 +7,21 @@
 #include <vector>
 
 #include "solver/numbers/types.hpp"
-#include "solver/scene/schedule.hpp"
 
 namespace rodsweep {
 
 struct Scene;
+
+/// A number over time: linear between given times, or smooth with zero speed at each of them; constant before and after.
+struct Schedule {
+  std::vector<double> times_s, factors;  ///< of equal length; both empty: 1 at all times
+  bool smooth = false;
+
+  double at(double time_s) const;
+  double largest() const;  ///< magnitude
+  /// Throws SceneError unless times increase and each has a factor.
+  void check() const;
+};
 
 /// A force and a torque, fixed in the world, times the schedule.
 struct PrescribedLoad {
@@ -46,7 +56,7 @@ struct Prescribed {
 
 /// Adds them, checked, to a scene with rods. Throws SceneError if a point is away from all rods, if a load is on a held
 /// segment, if a motion is on one that is not held or that the scene moves itself, if motions turn one segment about
-/// different points, or if rods cannot follow them (reach.hpp). `stretches`: whether rods may become longer.
+/// different points, or if rods cannot follow them. `stretches`: whether rods may become longer.
 void add_prescribed(const Prescribed& prescribed, Scene& scene, bool stretches = true);
 
 }  // namespace rodsweep

@@ -1,13 +1,13 @@
-// A scene: rods, the loads on them, and how held segments move.
+// A scene: rods, the loads on them, how held segments move, obstacles, and the settings of contacts.
 #pragma once
 
 #include <functional>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "solver/numbers/types.hpp"
 #include "solver/rod/rod.hpp"
-#include "solver/scene/contact_settings.hpp"
 #include "solver/scene/prescribed.hpp"
 #include "solver/scene/wind.hpp"
 
@@ -15,8 +15,8 @@ namespace rodsweep {
 
 /// Position and orientation of a held segment at a time.
 struct Pose {
-  Vector3 position;
-  Quaternion orientation;
+  Vector3 position{0, 0, 0};
+  Quaternion orientation = Quaternion::Identity();
 };
 
 /// A moving clamp: the pose of a static segment as a function of time [s].
@@ -35,6 +35,40 @@ struct PointLoad {
   Vector3 torque_nm{0, 0, 0};
   Vector3 arm_m{0, 0, 0};
   Schedule schedule{};
+};
+
+// Obstacles are at the given place at time 0 and move at their velocity without rotating.
+
+/// All points x with (x - point).normal <= 0 are solid. The normal need not be of unit length.
+struct HalfSpace {
+  Vector3 point_m{0, 0, 0};
+  Vector3 normal{0, 1, 0};
+  Vector3 velocity_m_s{0, 0, 0};
+};
+
+struct Ball {
+  Vector3 centre_m{0, 0, 0};
+  double radius_m = 1;
+  Vector3 velocity_m_s{0, 0, 0};
+};
+
+/// All points nearer than the radius to the line between two points.
+struct Capsule {
+  Vector3 from_m{0, 0, 0}, to_m{0, 0, 1};
+  double radius_m = 1;
+  Vector3 velocity_m_s{0, 0, 0};
+};
+
+/// A solid that contacts do not move.
+using Obstacle = std::variant<HalfSpace, Ball, Capsule>;
+
+struct ContactSettings {
+  double friction = 0.3;                      ///< Coulomb's coefficient mu, at rest and sliding
+  std::optional<double> obstacle_friction{};  ///< of rods with obstacles; else as between rods
+  double restitution = 0;   ///< e of Newton's law of impact, 0..1: the normal speed after, over that before
+  double tolerance = 1e-5;  ///< converged if no contact would move its segments by more, in their radii
+  int sweeps = 100;         ///< limit of sweeps over all contacts, there and back, after a projection of the rods
+  double recovery = 0.2;    ///< share of an earlier penetration that a step corrects, at most 1 % of a radius
 };
 
 struct Scene {

@@ -63,23 +63,12 @@ Rod chain(const std::vector<SegmentSpec>& segments, const RodParameters& p, doub
 }
 
 SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, double length_m, const RodParameters& p) {
-  SegmentSpec s;
-  s.position_m = centre;
-  s.orientation = orientation;
-  s.length_m = length_m;
-  s.radius_m = p.radius_m;
-  s.density_kg_m3 = p.density_kg_m3;
+  SegmentSpec s{centre, orientation, length_m, p.radius_m, p.density_kg_m3};
   if (p.section) s.section = cross_section(p);
   return s;
 }
 
-SegmentSpec held_point(const Vector3& at, const Quaternion& orientation) {
-  SegmentSpec out;
-  out.position_m = at;
-  out.orientation = orientation;
-  out.is_static = true;
-  return out;
-}
+SegmentSpec held_point(const Vector3& at, const Quaternion& orientation) { return {at, orientation, 0, 0, 0, true}; }
 
 void set_height(SegmentSpec& segment, const Vector3& height) {
   Matrix3 axes;
@@ -91,15 +80,11 @@ void set_height(SegmentSpec& segment, const Vector3& height) {
 
 JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p,
                         double force_n) {
-  const double length_a = segments[static_cast<std::size_t>(a)].length_m;
-  const double length_b = segments[static_cast<std::size_t>(b)].length_m;
+  const double length_a = segments[at(a)].length_m;
+  const double length_b = segments[at(b)].length_m;
   const double length = (length_a + length_b) / 2;
   const Section section = stiffness(p);
-  JointSpec joint;
-  joint.a = a;
-  joint.b = b;
-  joint.arm_a_m = Vector3(0, 0, length_a / 2);
-  joint.arm_b_m = Vector3(0, 0, -length_b / 2);
+  JointSpec joint{a, b, {0, 0, length_a / 2}, {0, 0, -length_b / 2}};
   joint.compliance_per_j = p.stretch == Stretch::physical
                                ? physical_compliance(length, section)
                                : joint_compliance(length, section, stretch_compliance(length, force_n, p));
@@ -120,9 +105,7 @@ void set_compliance(JointSpec& joint, const Series& series, double length_m, dou
 }
 
 JointSpec crossing_between(int a, int b, double stiffness_nm, double stretch_per_j) {
-  JointSpec joint;
-  joint.a = a;
-  joint.b = b;
+  JointSpec joint{a, b};
   joint.compliance_per_j.head<3>().setConstant(stretch_per_j);
   joint.compliance_per_j.tail<3>().setConstant(1 / stiffness_nm);
   return joint;
@@ -142,7 +125,7 @@ std::string text_of(const Vector3& point) {
 
 void move_clamp(Scene& scene, int segment, const Vector3& velocity_m_s) {
   const Rod& rod = scene.rods.front();
-  const auto s = static_cast<std::size_t>(segment);
+  const auto s = at(segment);
   scene.clamps.push_back({0, segment, [from = rod.position[s], turned = rod.orientation[s], velocity_m_s](double t) {
                             return Pose{from + t * velocity_m_s, turned};
                           }});

@@ -1,6 +1,6 @@
 // The scenes of jobs, each a struct of its parameters (SI units): the bending rod and the hanging helix of Shao et al.
 // 2021, a ring, nets and lattices, trees, and rods in contact. A scene's struct has its name in jobs and, in a source
-// of its own:
+// of its kind:
 //
 //   check()  throws SceneError with the bound if parameters do not fit together
 //   size()   counts segments, joints and rods without building them
@@ -192,7 +192,7 @@ struct Lattice : RodParameters {
 /// zero length at the root). Both moduli of an edge of radius r are those of the widest edge at the ground times (r /
 /// its radius)^`modulus_exponent`. An edge is a cone: the segment is the cylinder of its volume, and joints have the
 /// cone's compliance. A joint is half of one edge and half of the next in series; at a fork it is half of its branch
-/// alone, and the joint below carries the whole edge below (tree_joints.hpp). An "inextensible" joint is stiff enough
+/// alone, and the joint below carries the whole edge below (tree_scenes.cpp). An "inextensible" joint is stiff enough
 /// for the weight above it. The initial shape is without load: at first gravity makes it sag a little.
 struct Tree : RodParameters {  ///< radius and moduli: those of the trunk at the ground
   static constexpr const char* name = "tree";

@@ -1,10 +1,21 @@
+// Trees, and their joints: where the stiffness of edges is.
+//
+// An edge is a cone of two halves, from its lower node to its middle and on to its upper node (softness.hpp). Each joint has
+// the halves that meet at it, in series:
+//   a node with one edge above   the upper half of the edge below, the lower half of the edge above
+//   a fork                       the lower half of its branch. The moments of all branches bend the upper half of the
+//                                edge below, so that half belongs to the joint at that edge's lower end: a shift of
+//                                compliance by less than an edge, an error of second order in edge lengths
+//   the ground                   the lower half of its edge
+// So a joint's stiffness does not depend on the other branches of its node, nor on the order of nodes.
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "solver/numbers/counter_random.hpp"
 #include "solver/numbers/rotation.hpp"
-#include "solver/numbers/split_mix.hpp"
-#include "solver/scene/tree_joints.hpp"
+#include "solver/scene/scene_parts.hpp"
+#include "solver/scene/tree_skeleton.hpp"
 
 namespace rodsweep {
 namespace {
@@ -27,6 +38,61 @@ std::vector<SegmentSpec> segments_along(const Skeleton& skeleton, const RodParam
     if (first) segments[0].orientation = segments[1].orientation;
   }
   return segments;
+}
+
+/// Moduli that grow with the radius, from those of the widest edge at the ground.
+class Wood {
+ public:
+  Wood(const Skeleton& skeleton, const RodParameters& p, double modulus_exponent)
+      : parameters_(p), exponent_(modulus_exponent) {
+    for (const SkeletonNode& node : skeleton)
+      if (node.parent == 0) trunk_radius_m_ = std::max(trunk_radius_m_, node.base_radius_m);
+  }
+  Section section(double radius_m) const {
+    const double factor = exponent_ == 0 ? 1 : std::pow(radius_m / trunk_radius_m_, exponent_);
+    return circular_section(radius_m, factor * parameters_.youngs_modulus_pa, factor * parameters_.torsion_modulus_pa);
+  }
+
+ private:
+  const RodParameters& parameters_;
+  double exponent_, trunk_radius_m_ = 0;
+};
+
+/// The joints of a skeleton's edges; joint i - 1 is at the lower end of edge i, between segments parent(i) and i.
+/// `segments`: of the edges, 0 the ground. Moduli grow with the radius as stated in scenes.hpp.
+std::vector<JointSpec> tree_joints(const Skeleton& skeleton, const std::vector<SegmentSpec>& segments,
+                                   const RodParameters& p, double modulus_exponent) {
+  const Wood wood(skeleton, p, modulus_exponent);
+  std::vector<int> branches(skeleton.size());
+  for (std::size_t i = 1; i < skeleton.size(); ++i) ++branches[at(skeleton[i].parent)];
+  std::vector<double> carried(segments.size());  // [N], by the joint below each segment
+  for (std::size_t i = segments.size() - 1; i > 0; --i) {
+    carried[i] += weight({segments[i]}, p);
+    carried[at(skeleton[i].parent)] += carried[i];
+  }
+  const auto half = [&](std::size_t i, bool upper) {
+    const SkeletonNode& node = skeleton[i];
+    const double middle = (node.base_radius_m + node.radius_m) / 2;
+    return cone(middle, upper ? node.radius_m : node.base_radius_m, segments[i].length_m / 2,
+                [&wood](double radius) { return wood.section(radius); });
+  };
+  std::vector<JointSpec> joints;
+  joints.reserve(segments.size() - 1);
+  for (std::size_t i = 1; i < segments.size(); ++i) {
+    const std::size_t below = at(skeleton[i].parent);
+    const SegmentSpec &a = segments[below], &b = segments[i];
+    const Softness of_a = below > 0 && branches[below] == 1 ? half(below, true) : Softness();
+    const Softness of_b = branches[i] > 1 ? half(i, false) + half(i, true) : half(i, false);
+    const Quaternion rest = (a.orientation.conjugate() * b.orientation).normalized();
+    const Series series = in_series(of_a, of_b, rest);
+
+    JointSpec joint{static_cast<int>(below), static_cast<int>(i), {0, 0, a.length_m / 2}, {0, 0, -b.length_m / 2}};
+    joint.rest = rest;
+    joint.frame = series.frame;
+    set_compliance(joint, series, (a.length_m + b.length_m) / 2, carried[i], p);
+    joints.push_back(joint);
+  }
+  return joints;
 }
 
 Rod rod_of(const Skeleton& skeleton, const RodParameters& p, double modulus_exponent, const Vector3& base) {

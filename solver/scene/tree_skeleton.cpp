@@ -4,8 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "solver/numbers/counter_random.hpp"
 #include "solver/numbers/rotation.hpp"
-#include "solver/numbers/split_mix.hpp"
 #include "solver/rod/rod.hpp"
 
 namespace rodsweep {
@@ -32,8 +32,8 @@ class Growth {
     const Vector3 step = length / shape_.segments * (frame * Vector3::UnitZ());
     for (int i = 0; i < shape_.segments; ++i) {
       const auto tapered = [&](int edges) { return radius * (1 - (1 - shape_.taper) * edges / shape_.segments); };
-      const Vector3 at = out_[static_cast<std::size_t>(node)].position_m + step;
-      out_.push_back({node, at, tapered(i + 1), tapered(i)});
+      const Vector3 tip = out_[at(node)].position_m + step;
+      out_.push_back({node, tip, tapered(i + 1), tapered(i)});
       node = static_cast<int>(out_.size()) - 1;
     }
     if (level == shape_.depth) return;
@@ -63,11 +63,11 @@ class Growth {
 
 std::optional<SkeletonFault> fault(const Skeleton& skeleton) {
   const auto edge = [&skeleton](int node) -> Vector3 {
-    const SkeletonNode& end = skeleton[static_cast<std::size_t>(node)];
-    return end.position_m - skeleton[static_cast<std::size_t>(end.parent)].position_m;
+    const SkeletonNode& end = skeleton[at(node)];
+    return end.position_m - skeleton[at(end.parent)].position_m;
   };
   for (int i = 0; i < static_cast<int>(skeleton.size()); ++i) {
-    const SkeletonNode& node = skeleton[static_cast<std::size_t>(i)];
+    const SkeletonNode& node = skeleton[at(i)];
     std::ostringstream text;
     if (!(node.radius_m > 0)) text << "radius is " << node.radius_m << "; must be positive";
     if (i > 0 && edge(i).norm() == 0) text << "position is that of its parent; must be different";
@@ -79,10 +79,10 @@ std::optional<SkeletonFault> fault(const Skeleton& skeleton) {
 Skeleton with_base_radii(Skeleton skeleton) {
   std::vector<int> branches(skeleton.size());
   for (const SkeletonNode& node : skeleton)
-    if (node.parent >= 0) ++branches[static_cast<std::size_t>(node.parent)];
+    if (node.parent >= 0) ++branches[at(node.parent)];
   for (SkeletonNode& node : skeleton) {
     if (node.parent < 0) continue;
-    const auto parent = static_cast<std::size_t>(node.parent);
+    const auto parent = at(node.parent);
     node.base_radius_m = branches[parent] == 1 ? skeleton[parent].radius_m : node.radius_m;
   }
   return skeleton;
@@ -116,7 +116,7 @@ int edge_count(const TreeShape& shape) { return static_cast<int>(edges_of(shape)
 Skeleton grow(const TreeShape& shape, double radius_m) {
   validate(shape);
   Skeleton out;
-  out.reserve(static_cast<std::size_t>(edge_count(shape)) + 1);
+  out.reserve(at(edge_count(shape)) + 1);
   out.push_back({-1, Vector3::Zero(), radius_m, radius_m});
   const Quaternion up = turn_between(Vector3::UnitZ(), Vector3::UnitY());
   Growth(shape, out).branch(0, up, shape.length_m, radius_m, 0);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/numbers/counter_random.hpp"
 #include "solver/numbers/lane_math.hpp"
-#include "solver/numbers/split_mix.hpp"
 
 namespace rodsweep {
 
@@ -19,7 +19,7 @@ Wind::Wind(const WindParameters& parameters) : p_(parameters) {
   if (p_.turbulence_m_s == 0) return;
   SplitMix random(p_.seed);
   const double size = p_.turbulence_m_s * std::sqrt(6.0 / p_.turbulence_modes);
-  modes_.assign(static_cast<std::size_t>((p_.turbulence_modes + lane_width - 1) / lane_width), Modes{});
+  modes_.assign(at((p_.turbulence_modes + lane_width - 1) / lane_width), Modes{});
   for (int m = 0; m < p_.turbulence_modes; ++m) {
     Vector3 wave;
     for (int i = 0; i < 3; ++i) wave[i] = random.normal() / p_.turbulence_length_m;
@@ -27,7 +27,7 @@ Wind::Wind(const WindParameters& parameters) : p_(parameters) {
     const Vector3 across = wave.unitOrthogonal();
     const Vector3 amplitude = size * (std::cos(around) * across + std::sin(around) * wave.cross(across) / wave.norm());
     const int lane = m % lane_width;
-    Modes& modes = modes_[static_cast<std::size_t>(m / lane_width)];
+    Modes& modes = modes_[at(m / lane_width)];
     for (int i = 0; i < 3; ++i) {
       modes.amplitude[i][lane] = amplitude[i];
       modes.wave[i][lane] = wave[i] / (2 * pi);

@@ -9,7 +9,7 @@ FreeFlight::FreeFlight(const Rod& rod, Integrator integrator, double dt) : integ
   for (int first = 0; first < count; first += lane_width) {
     Group group{};
     for (int lane = 0; lane < lane_width; ++lane) {
-      const Segment& segment = rod.segments[static_cast<std::size_t>(std::min(first + lane, count - 1))];
+      const Segment& segment = rod.segments[at(std::min(first + lane, count - 1))];
       group.is_free[lane] = segment.is_static ? 0 : -1;
       group.inverse_mass[lane] = segment.inverse_mass;
       group.inverse_inertia_transverse[lane] = segment.inverse_inertia_transverse;
@@ -73,8 +73,7 @@ void FreeFlight::start_anew(Rod& rod) {
 void FreeFlight::predict(Rod& rod, double damping_per_s, const Vector3& gravity_m_s2, const SegmentLoads* loads) {
   if (uses_two_steps_) return predict_by_two_steps(rod, damping_per_s, gravity_m_s2, loads);
   const double damped_dt = dt_ / (1 + damping_per_s * dt_);
-  const LaneVector gain = {all_lanes(dt_ * gravity_m_s2.x()), all_lanes(dt_ * gravity_m_s2.y()),
-                           all_lanes(dt_ * gravity_m_s2.z())};
+  const LaneVector gain = all_lanes(dt_ * gravity_m_s2);
   visit_groups(groups_, rod, [&](Group& group, std::size_t s, int count) {
     const LaneMotion& now = group.now;
     const LaneVector axis = director(now.orientation);
@@ -94,8 +93,7 @@ void FreeFlight::predict_by_two_steps(Rod& rod, double damping_per_s, const Vect
                                       const SegmentLoads* loads) {
   const double h = this->h();
   const Lane step = all_lanes(h);
-  const LaneVector gain = {all_lanes(h * gravity_m_s2.x()), all_lanes(h * gravity_m_s2.y()),
-                           all_lanes(h * gravity_m_s2.z())};
+  const LaneVector gain = all_lanes(h * gravity_m_s2);
   visit_groups(groups_, rod, [&](Group& group, std::size_t s, int count) {
     Flight flight{group.gyration, all_lanes(1 / (1 + damping_per_s * h)), gain};
     if (loads) {

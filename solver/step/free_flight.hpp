@@ -4,18 +4,33 @@
 //   x* = x + h v*,   q* = normalise(q + h [0, w*] q / 2)        of free segments
 //   v = (x - x_old) / h,   w = (2 / h) Im(d) / Re(d),  d = q conj(q_old)
 //
-// BDF2 has other x_old, q_old, v* and w* (integrator.hpp, two_step_flight.hpp).
+// BDF2 has other x_old, q_old, v* and w* (two_step_flight.hpp).
 // I is axisymmetric: w x I w = (i_a - i_t) (t.w) w x t is transverse to the axis t, and I^-1 = i_t^-1 + excess t t^T.
 // Processes as many segments at a time as a register has lanes. Nothing allocates after construction.
+//
+// The schemes in time: implicit Euler, as in Deul et al. 2018 and Shao et al. 2021, and BDF2 (Curtiss and Hirschfelder
+// 1952). Both are one formula, with the forces at the end of the step:
+//
+//   x = x^ + h v,   q = rotated(q^, h w),   v (1 + c h) = v^ + h (g + f / m),   L (1 + c h) = L^ + h tau
+//
+//   euler   first order,   h = dt,       x^ = x_n,                     v^ = v_n, ...
+//   bdf2    second order,  h = 2 dt / 3, x^ = (4 x_n - x_(n-1)) / 3,   v^ = (4 v_n - v_(n-1)) / 3, ...
+//
+// L is the angular momentum in the world. So constraints, compliance, damping and contacts only see another time step,
+// h. The first step of BDF2 is one of Euler.
 #pragma once
 
 #include <vector>
 
 #include "solver/rod/rod.hpp"
-#include "solver/step/integrator.hpp"
 #include "solver/step/two_step_flight.hpp"
 
 namespace rodsweep {
+
+enum class Integrator { euler, bdf2 };
+
+/// h of a step of dt.
+constexpr double implicit_dt(double dt, bool uses_two_steps) { return uses_two_steps ? 2 * dt / 3 : dt; }
 
 /// The loads on a segment of a rod, in the world.
 struct SegmentLoads {

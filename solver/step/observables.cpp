@@ -10,14 +10,9 @@
 namespace rodsweep {
 namespace {
 
-/// The joint's shared point from its segment a (or b).
-Vector3 point_on_a(const Rod& rod, const Joint& j) {
-  const std::size_t a = static_cast<std::size_t>(j.a);
-  return rod.position[a] + rod.orientation[a] * j.arm_a;
-}
-Vector3 point_on_b(const Rod& rod, const Joint& j) {
-  const std::size_t b = static_cast<std::size_t>(j.b);
-  return rod.position[b] + rod.orientation[b] * j.arm_b;
+/// A joint's shared point from one of its segments.
+Vector3 point_on(const Rod& rod, int segment, const Vector3& arm) {
+  return rod.position[at(segment)] + rod.orientation[at(segment)] * arm;
 }
 
 /// I w of an axisymmetric segment, world frame.
@@ -57,12 +52,12 @@ double rod_length(const Rod& rod) {
     head[s] = rod.position[s] + half;
   }
   const auto move_end = [&](int segment, const Vector3& arm, const Vector3& to) {
-    const std::size_t s = static_cast<std::size_t>(segment);
+    const std::size_t s = at(segment);
     if (std::abs(arm.z()) < rod.segments[s].length_m / 4) return;  // nearer to the centre than to an end
     (arm.z() < 0 ? tail[s] : head[s]) = to;
   };
   for (const Joint& j : rod.joints) {
-    const Vector3 midpoint = (point_on_a(rod, j) + point_on_b(rod, j)) / 2;
+    const Vector3 midpoint = (point_on(rod, j.a, j.arm_a) + point_on(rod, j.b, j.arm_b)) / 2;
     move_end(j.a, j.arm_a, midpoint);
     move_end(j.b, j.arm_b, midpoint);
   }
@@ -75,7 +70,7 @@ double rod_length(const Rod& rod) {
 double joint_gap(const Rod& rod) {
   double worst = 0;
   for (const Joint& j : rod.joints)
-    worst = std::max(worst, (point_on_a(rod, j) - point_on_b(rod, j)).norm() / j.length);
+    worst = std::max(worst, (point_on(rod, j.a, j.arm_a) - point_on(rod, j.b, j.arm_b)).norm() / j.length);
   return worst;
 }
 

@@ -4,13 +4,17 @@
 
 namespace rodsweep {
 
-LinearProjection::LinearProjection(const Scene& scene, LinearSolve& solve, std::optional<double> momentum_tolerance)
-    : solve_(solve), momentum_tolerance_(momentum_tolerance) {
-  for (const Rod& rod : scene.rods) {
-    systems_.emplace_back(rod);
-    delta_lambda_.push_back(VectorX::Zero(6 * rod.joint_count()));
-  }
+std::vector<VectorX> unknowns_of(const Scene& scene) {
+  std::vector<VectorX> out;
+  for (const Rod& rod : scene.rods) out.push_back(VectorX::Zero(6 * rod.joint_count()));
+  return out;
 }
+
+LinearProjection::LinearProjection(const Scene& scene, LinearSolve& solve, std::optional<double> momentum_tolerance)
+    : systems_(scene.rods.begin(), scene.rods.end()),
+      delta_lambda_(unknowns_of(scene)),
+      solve_(solve),
+      momentum_tolerance_(momentum_tolerance) {}
 
 ProjectionReport LinearProjection::project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) {
   LinearSystem& system = systems_[static_cast<std::size_t>(at.rod)];
@@ -31,9 +35,7 @@ ProjectionReport LinearProjection::project(Rod& rod, const SolvePosition& at, do
   return report;
 }
 
-DirectSolve::DirectSolve(const Scene& scene) : scene_(scene) {
-  for (const Rod& rod : scene.rods) factors_.emplace_back(rod);
-}
+DirectSolve::DirectSolve(const Scene& scene) : scene_(scene), factors_(scene.rods.begin(), scene.rods.end()) {}
 
 SolveOutcome DirectSolve::solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& delta_lambda) {
   const auto rod = static_cast<std::size_t>(at.rod);

@@ -16,6 +16,9 @@
 
 namespace rodsweep {
 
+/// Zeros: a vector of unknowns for every rod.
+std::vector<VectorX> unknowns_of(const Scene& scene);
+
 /// The place of a solve in a simulation.
 struct SolvePosition {
   int step = 0;    ///< time step, from 0
@@ -55,7 +58,7 @@ class LinearProjection : public Projection {
   ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override;
   bool keep_balance(bool wanted) override { return keeps_balance_ = wanted && momentum_tolerance_; }
 
-  const LinearSystem& system(int rod) const { return systems_[static_cast<std::size_t>(rod)]; }
+  const LinearSystem& system(int rod) const { return systems_[at(rod)]; }
 
  private:
   std::vector<LinearSystem> systems_;

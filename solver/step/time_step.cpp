@@ -18,14 +18,14 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
     : scene_(scene), settings_(settings), start_time_s_(scene.time_s) {
   const auto check = [&scene](const char* what, int rod, int segment) {
     if (rod < 0 || rod >= static_cast<int>(scene.rods.size()) || segment < 0 ||
-        segment >= scene.rods[static_cast<std::size_t>(rod)].segment_count())
+        segment >= scene.rods[at(rod)].segment_count())
       throw SceneError(std::string(what) + " refers to segment " + std::to_string(segment) + " of rod " +
                        std::to_string(rod) + ", which the scene does not have");
   };
   for (const PointLoad& load : scene.loads) check("a point load", load.rod, load.segment);
   for (const MovingClamp& clamp : scene.clamps) {
     check("a moving clamp", clamp.rod, clamp.segment);
-    if (!scene.rods[static_cast<std::size_t>(clamp.rod)].segments[static_cast<std::size_t>(clamp.segment)].is_static)
+    if (!scene.rods[at(clamp.rod)].segments[at(clamp.segment)].is_static)
       throw SceneError("a moving clamp needs a static segment; segment " + std::to_string(clamp.segment) + " is free");
   }
   for (const Rod& rod : scene.rods) {
@@ -35,7 +35,7 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
   }
   torques_nm_.resize(scene.loads.size());
   for (const PointLoad& load : scene.loads) {
-    Rod& rod = scene.rods[static_cast<std::size_t>(load.rod)];
+    Rod& rod = scene.rods[at(load.rod)];
     rod.load_torque_nm.assign(rod.segments.size(), Vector3::Zero());
   }
   if (scene.contact)
@@ -44,39 +44,36 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
 }
 
 StepReport TimeStepper::step(Projection& projection) {
-  start();
-  find_loads();
   StepReport report;
   report.balanced = projection.keep_balance(true);
+
+  // Predict.
+  start();
+  find_loads();
   predict(report.balanced);
-  if (report.balanced)
-    start_from_last_step();
-  else
-    for (Rod& rod : scene_.rods) rod.lambda.setZero();
+
+  // Detect.
   if (contact_ && !contact_->find(report.balanced)) {
     report.outcome = SolveOutcome::not_a_number;
     return report;
   }
+
+  // Newton.
   const int most = settings_.newton_iterations;
-  Newton newton = Newton::open;
-  if (report.balanced) {
-    newton = iterate(projection, balancing_iterations(most), report);
-    const bool lost = newton == Newton::failed || (newton == Newton::open && is_lost());
-    if (lost && report.newton_iterations < most) {
-      take_back();
-      newton = Newton::open;
-      report.balanced = projection.keep_balance(false);
-      report.outcome = SolveOutcome::converged;
-      if (contact_) contact_->find(false);
-    }
+  Newton newton = report.balanced ? iterate(projection, balancing_iterations(most), report) : Newton::open;
+  if (report.balanced && report.newton_iterations < most && is_lost(newton)) {
+    take_back(projection, report);
+    newton = Newton::open;
   }
   if (newton == Newton::open) newton = iterate(projection, most, report);
   if (report.balanced)
     for (Rod& rod : scene_.rods) unstiffen(rod);
   if (newton == Newton::failed) return report;
+
+  // Update.
   if (contact_) {
-    report.contacts = static_cast<int>(contact_->contacts().size());
     const ContactState state = contact_->state();
+    report.contacts = static_cast<int>(contact_->contacts().size());
     report.penetration = state.penetration;
     report.contact_residual = state.residual;
   }
@@ -86,24 +83,19 @@ StepReport TimeStepper::step(Projection& projection) {
   return report;
 }
 
-bool TimeStepper::is_lost() const {
+bool TimeStepper::is_lost(Newton balanced) const {
   constexpr double lost_joints = 1e-6, lost_momentum = 0.1;
-  return !(newton_residual_ < lost_joints && momentum_residual_ < lost_momentum);
+  if (balanced == Newton::open) return !(newton_residual_ < lost_joints && momentum_residual_ < lost_momentum);
+  return balanced == Newton::failed;
 }
 
-void TimeStepper::start_from_last_step() {
-  for (std::size_t r = 0; r < scene_.rods.size(); ++r)
-    if (!scene_.rods[r].joints.empty())  // without joints Newton does nothing, and p* is the result
-      flights_[r].extrapolate(scene_.rods[r]);
-}
-
-/// Resets the rods to the p* of a step without balance, with zero multipliers.
-void TimeStepper::take_back() {
+/// Starts the step again without the balance of momentum.
+void TimeStepper::take_back(Projection& projection, StepReport& report) {
   predict(false);
-  for (Rod& rod : scene_.rods) {
-    rod.lambda.setZero();
-    unstiffen(rod);
-  }
+  for (Rod& rod : scene_.rods) unstiffen(rod);
+  report.balanced = projection.keep_balance(false);
+  report.outcome = SolveOutcome::converged;
+  if (contact_) contact_->find(false);
 }
 
 // Iterates from the report's number of iterations up to `until`.
@@ -157,7 +149,9 @@ void TimeStepper::start() {
 }
 
 void TimeStepper::find_loads() {
-  if (scene_.wind)
+  if (!scene_.wind)
+    for (const PointLoad& load : scene_.loads) loads_[at(load.rod)].force_n[at(load.segment)].setZero();
+  else
     for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
       const Rod& rod = scene_.rods[r];
       const double time_s = flights_[r].uses_two_steps() ? end_of_step() : scene_.time_s;
@@ -166,12 +160,9 @@ void TimeStepper::find_loads() {
           loads_[r].force_n[s] = scene_.wind->drag(rod.segments[s], rod.position[s], director(rod.orientation[s]),
                                                    rod.velocity[s], time_s, settings_.dt);
     }
-  if (!scene_.wind)
-    for (const PointLoad& load : scene_.loads)
-      loads_[static_cast<std::size_t>(load.rod)].force_n[static_cast<std::size_t>(load.segment)].setZero();
   for (std::size_t i = 0; i < scene_.loads.size(); ++i) {
     const PointLoad& load = scene_.loads[i];
-    const auto r = static_cast<std::size_t>(load.rod), s = static_cast<std::size_t>(load.segment);
+    const auto r = at(load.rod), s = at(load.segment);
     const double factor = load.schedule.at(end_of_step());
     const Vector3 force_n = factor * load.force_n;
     loads_[r].force_n[s] += force_n;
@@ -179,17 +170,18 @@ void TimeStepper::find_loads() {
   }
 }
 
-// Without joints p* is the result, so it must have the torques.
+// Ends at p*, or with the balance where the last step leads to. Without joints Newton does nothing and p* is the result,
+// so it must have the torques.
 void TimeStepper::predict(bool balanced) {
   const auto torque = [this](const PointLoad& load, bool in_balance) -> Vector3& {
-    const auto r = static_cast<std::size_t>(load.rod), s = static_cast<std::size_t>(load.segment);
+    const auto r = at(load.rod), s = at(load.segment);
     return in_balance ? scene_.rods[r].load_torque_nm[s] : loads_[r].torque_nm[s];
   };
   for (const PointLoad& load : scene_.loads)
     for (const bool in_balance : {false, true}) torque(load, in_balance).setZero();
   for (std::size_t i = 0; i < scene_.loads.size(); ++i) {
     const PointLoad& load = scene_.loads[i];
-    torque(load, balanced && !scene_.rods[static_cast<std::size_t>(load.rod)].joints.empty()) += torques_nm_[i];
+    torque(load, balanced && !scene_.rods[at(load.rod)].joints.empty()) += torques_nm_[i];
   }
   const bool loaded = scene_.wind || !scene_.loads.empty();
   const Vector3 gravity = scene_.gravity_at(end_of_step());
@@ -197,14 +189,19 @@ void TimeStepper::predict(bool balanced) {
     flights_[r].predict(scene_.rods[r], scene_.damping_per_s, gravity, loaded ? &loads_[r] : nullptr);
   const double end = end_of_step();
   for (const MovingClamp& clamp : scene_.clamps) {
-    Rod& rod = scene_.rods[static_cast<std::size_t>(clamp.rod)];
+    Rod& rod = scene_.rods[at(clamp.rod)];
     const Pose pose = clamp.pose(end);
-    rod.position[static_cast<std::size_t>(clamp.segment)] = pose.position;
-    rod.orientation[static_cast<std::size_t>(clamp.segment)] = pose.orientation.normalized();
+    rod.position[at(clamp.segment)] = pose.position;
+    rod.orientation[at(clamp.segment)] = pose.orientation.normalized();
   }
-  for (Rod& rod : scene_.rods) {
+  for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
+    Rod& rod = scene_.rods[r];
     rod.free_position = rod.position;
     rod.free_orientation = rod.orientation;
+    if (!balanced)
+      rod.lambda.setZero();
+    else if (!rod.joints.empty())
+      flights_[r].extrapolate(rod);
   }
 }
 

@@ -5,7 +5,7 @@
 //   lambda = 0;  Newton: project every rod until max |C + alpha~ lambda| is below the tolerance, then the contacts
 //   with alpha~ = alpha / dt_c^2, dt_c^2 = h^2 / (1 + c h): drag is implicit, forces are J^T lambda / dt_c^2
 //   v, w from the motion (free_flight.hpp)
-// Here h is dt, or less in a step of BDF2 (integrator.hpp).
+// Here h is dt, or less in a step of BDF2 (free_flight.hpp).
 // If the projection keeps the balance of momentum (momentum_balance.hpp), Newton starts from the last step's lambda,
 // from x + h (2 v - v_before) and q likewise. It ends when momentum is in balance as well. If two thirds of the
 // iterations do not come near that (a slender rod that hits the floor end-on can fold in many ways), the step is undone
@@ -60,11 +60,10 @@ class TimeStepper {
   void start();
   void find_loads();
   void predict(bool balanced);
-  void start_from_last_step();
-  void take_back();
+  void take_back(Projection& projection, StepReport& report);
   Newton iterate(Projection& projection, int until, StepReport& report);
   double end_of_step() const { return start_time_s_ + (steps_ + 1) * settings_.dt; }
-  bool is_lost() const;  ///< whether the balanced attempt must be undone
+  bool is_lost(Newton balanced) const;  ///< whether a balanced attempt that ended so must be undone
 
   Scene& scene_;
   StepSettings settings_;

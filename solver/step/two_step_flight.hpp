@@ -1,4 +1,4 @@
-// The free flight of BDF2 (integrator.hpp), of as many segments as a register has lanes.
+// The free flight of BDF2 (free_flight.hpp), of as many segments as a register has lanes.
 //
 // A turn by the constraints, d, adds to a turn h w* of free flight as h w = h w* + d + d x h w* / 2: neglecting the
 // last term would make BDF2 first order, and so would the axis and the inertia at the start of the step. So BDF2 expects

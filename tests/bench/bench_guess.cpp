@@ -7,6 +7,7 @@
 #include "network/guess/base_guess.hpp"
 #include "network/guess/coping_net_guess.hpp"
 #include "network/processor/factor_inference.hpp"
+#include "solver/guess/extrapolation_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"

@@ -20,7 +20,7 @@
 #include "runner/training/model_file.hpp"
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/cg/petsc_session.hpp"
-#include "solver/numbers/split_mix.hpp"
+#include "solver/numbers/counter_random.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/observables.hpp"
 #include "solver/step/time_step.hpp"

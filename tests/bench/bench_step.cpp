@@ -9,9 +9,8 @@
 #include <optional>
 
 #include "solver/scene/scenes.hpp"
-#include "solver/step/pbd_projection.hpp"
+#include "solver/step/gauss_seidel.hpp"
 #include "solver/step/time_step.hpp"
-#include "solver/step/xpbd_projection.hpp"
 #include "tests/bench/medians.hpp"
 
 namespace {

@@ -13,7 +13,7 @@
 #include "runner/plan/plan.hpp"
 #include "runner/specs/guess_keys.hpp"
 #include "solver/cg/cg_solver.hpp"
-#include "solver/linear/rounding_level.hpp"
+#include "solver/linear/solve_outcome.hpp"
 #include "tests/runner/data_set_examples.hpp"
 #include "tests/solver/simulation.hpp"
 

@@ -12,8 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/plugin/plugin_guess.hpp"
-#include "solver/plugin/plugin_preconditioner.hpp"
+#include "solver/plugin/plugin.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::every_user_function {

@@ -5,6 +5,7 @@
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/measure/guesses.hpp"
 #include "runner/training/validation_ratio.hpp"
+#include "solver/guess/zero_guess.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {

@@ -1,7 +1,7 @@
 // The response of rods to impulses, against dense algebra and rigid bodies; Delassus operators against responses.
 #include <catch2/catch.hpp>
 
-#include "solver/contact/delassus_operator.hpp"
+#include "solver/contact/rod_response.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "tests/solver/support.hpp"
 

@@ -4,7 +4,6 @@
 
 #include "solver/factor/block_factor.hpp"
 #include "solver/factor/elimination_order.hpp"
-#include "solver/factor/nested_dissection.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "tests/solver/support.hpp"
 

@@ -5,9 +5,13 @@
 #include <memory>
 #include <utility>
 
-#include "solver/guess/initial_guess.hpp"
+#include "solver/guess/extrapolation_guess.hpp"
+#include "solver/guess/guarded_guess.hpp"
+#include "solver/guess/oracle_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
+#include "solver/guess/wrapped_guess.hpp"
+#include "solver/guess/zero_guess.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_initial_guess {

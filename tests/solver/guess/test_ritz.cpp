@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "solver/cg/conjugate_gradient.hpp"
+#include "solver/guess/extrapolation_guess.hpp"
 #include "solver/guess/ritz_guess.hpp"
 #include "tests/solver/support.hpp"
 

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "solver/guess/extrapolation_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
+#include "solver/guess/guarded_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
 #include "tests/solver/support.hpp"

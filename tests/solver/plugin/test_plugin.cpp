@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "solver/cg/cg_solver.hpp"
-#include "solver/plugin/plugin_guess.hpp"
-#include "solver/plugin/plugin_preconditioner.hpp"
+#include "solver/guess/extrapolation_guess.hpp"
+#include "solver/plugin/plugin.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_plugin {

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "solver/step/gauss_seidel.hpp"
 #include "solver/step/observables.hpp"
-#include "solver/step/xpbd_projection.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "solver/cg/conjugate_gradient.hpp"
-#include "solver/guess/initial_guess.hpp"
+#include "solver/guess/extrapolation_guess.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "solver/step/gauss_seidel.hpp"
 #include "solver/step/observables.hpp"
-#include "solver/step/xpbd_projection.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"

@@ -5,9 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "solver/step/gauss_seidel.hpp"
 #include "solver/step/observables.hpp"
-#include "solver/step/pbd_projection.hpp"
-#include "solver/step/xpbd_projection.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 

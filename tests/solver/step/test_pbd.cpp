@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "solver/numbers/rotation.hpp"
+#include "solver/step/gauss_seidel.hpp"
 #include "solver/step/observables.hpp"
-#include "solver/step/pbd_projection.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 

@@ -2,8 +2,7 @@
 // Gauss-Seidel. tests/laws/every_scene.cpp has the same law for every scene by direct solves.
 #include <catch2/catch.hpp>
 
-#include "solver/step/pbd_projection.hpp"
-#include "solver/step/xpbd_projection.hpp"
+#include "solver/step/gauss_seidel.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/turned.hpp"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "solver/step/gauss_seidel.hpp"
 #include "solver/step/observables.hpp"
-#include "solver/step/xpbd_projection.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"

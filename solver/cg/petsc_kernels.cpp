@@ -1,13 +1,14 @@
-#include "solver/cg/petsc_vector.hpp"
+#include "solver/cg/petsc_kernels.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "solver/cg/petsc_check.hpp"
-#include "solver/numbers/lanes.hpp"
 
-// The table of vector operations is in PETSc's private header, which Debian installs with the public ones.
+// The table of vector operations and the matrix class need PETSc's private headers, which Debian installs with the public
+// ones.
+#include <petsc/private/matimpl.h>
 #include <petsc/private/vecimpl.h>
 
 namespace rodsweep {
@@ -23,8 +24,6 @@ template <class... Vecs>
 bool ours(Vecs... vectors) {
   return (... && (vectors->ops->dot == dot));
 }
-
-double sum(const Lane8& v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
 
 double product(Vec x, Vec y) {
   const Lane8 *a = lanes(x), *b = lanes(y);
@@ -99,7 +98,7 @@ PetscErrorCode create_vectors(Mat m, Vec* right, Vec* left) noexcept {
 }
 
 PetscErrorCode create(PetscInt size, Vec* out) noexcept {
-  const std::size_t count = static_cast<std::size_t>(size) / 8 + 1;
+  const std::size_t count = at(size) / 8 + 1;
   Lane8* const memory = static_cast<Lane8*>(std::aligned_alloc(alignof(Lane8), count * sizeof(Lane8)));
   if (!memory) return PETSC_ERR_MEM;
   std::fill_n(memory, count, Lane8{});
@@ -125,6 +124,30 @@ PetscErrorCode create(PetscInt size, Vec* out) noexcept {
   return 0;
 }
 
+constexpr char class_name[] = "rodsweep_blocks";
+
+PetscErrorCode multiply(Mat m, Vec x, Vec y) noexcept {
+  BlockOperator& op = *static_cast<BlockOperator*>(m->data);
+  op.multiply(vector_data(x), vector_data(y));
+  ++op.products;
+  return entries_changed(y);
+}
+
+PetscErrorCode extract_diagonal(Mat m, Vec diagonal) noexcept {
+  const BlockMatrix& a = static_cast<BlockOperator*>(m->data)->a;
+  double* out = vector_data(diagonal);
+  for (int row = 0; row < a.block_rows(); ++row)
+    for (int i = 0; i < 6; ++i) out[6 * row + i] = a.diagonal_entry(row, i);
+  return entries_changed(diagonal);
+}
+
+PetscErrorCode create_class(Mat m) noexcept {
+  m->ops->mult = multiply;
+  m->ops->getdiagonal = extract_diagonal;
+  m->assembled = m->preallocated = PETSC_TRUE;
+  return PetscObjectChangeTypeName(reinterpret_cast<PetscObject>(m), class_name);
+}
+
 }  // namespace
 
 Vec create_vector(PetscInt size) {
@@ -146,7 +169,20 @@ void copy(const VectorX& from, Vec to) {
   petsc_check(entries_changed(to), "PetscObjectStateIncrease");
 }
 
-void copy(Vec from, VectorX& to) { std::copy_n(vector_data(from), to.size(), to.data()); }
 void add(Vec from, VectorX& to) { to += Eigen::Map<const VectorX>(vector_data(from), to.size()); }
+
+Mat create_operator(BlockOperator& op) {
+  const PetscInt n = op.a.unknowns();
+  Mat m = nullptr;
+  petsc_check(MatRegister(class_name, create_class), "MatRegister");
+  petsc_check(MatCreate(PETSC_COMM_SELF, &m), "MatCreate");
+  petsc_check(MatSetSizes(m, n, n, n, n), "MatSetSizes");
+  petsc_check(MatSetType(m, class_name), "MatSetType");
+  petsc_check(MatSetUp(m), "MatSetUp");
+  petsc_check(MatSetOption(m, MAT_SYMMETRIC, PETSC_TRUE), "MatSetOption");
+  use_our_vectors(m);
+  m->data = &op;
+  return m;
+}
 
 }  // namespace rodsweep
