@@ -1,5 +1,6 @@
 // The commands `status` and `info`: reports on a results file, as text and as JSON.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

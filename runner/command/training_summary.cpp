@@ -1,6 +1,7 @@
 #include "runner/command/training_summary.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

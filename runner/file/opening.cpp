@@ -1,6 +1,7 @@
 #include "runner/file/opening.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

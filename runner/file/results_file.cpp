@@ -1,6 +1,7 @@
 #include "runner/file/results_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>

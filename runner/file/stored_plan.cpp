@@ -1,6 +1,7 @@
 #include "runner/file/stored_plan.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -99,7 +99,7 @@ std::string describe(const Key& key) {
 
 std::optional<nlohmann::ordered_json> preset_of(const Key& key, const std::string& tag_value) {
   const auto own = key.preset_for.find(tag_value);
-  return own == key.preset_for.end() ? key.preset : own->second;
+  return own == key.preset_for.end() ? key.preset : std::optional(own->second);
 }
 
 bool belongs(const Key& key, const std::string& tag_value) {

@@ -18,16 +18,21 @@ namespace rodsweep {
 
 namespace {
 
-std::string stderr_of_parent() { return fmt::format("/proc/{}/fd/2", getppid()); }
-
-/// mpirun reads each rank's stderr through a pipe. If mpirun is the parent process, checks its stderr instead.
-bool stderr_is_terminal() {
-  if (isatty(STDERR_FILENO)) return true;
-  if (std::getenv("OMPI_COMM_WORLD_RANK") == nullptr) return false;
+bool is_terminal(const std::string& path) {
   struct stat file {};
-  if (stat(stderr_of_parent().c_str(), &file) != 0 || !S_ISCHR(file.st_mode)) return false;
+  if (stat(path.c_str(), &file) != 0 || !S_ISCHR(file.st_mode)) return false;
   const unsigned device = major(file.st_rdev);
   return device == 4 || device == 5 || (device >= 136 && device <= 143);  // consoles, /dev/tty, pseudo terminals
+}
+
+/// The terminal where mpirun, the parent process, shows what the rank writes to stderr; null: there is none.
+std::FILE* terminal_of_mpirun() {
+  if (isatty(STDERR_FILENO) || std::getenv("OMPI_COMM_WORLD_RANK") == nullptr) return nullptr;
+  const std::string path = fmt::format("/proc/{}/fd/2", getppid());
+  const int terminal = is_terminal(path) ? open(path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC) : -1;
+  std::FILE* const file = terminal < 0 ? nullptr : fdopen(terminal, "w");
+  if (file != nullptr) std::setvbuf(file, nullptr, _IONBF, 0);
+  return file;
 }
 
 bool set(const char* variable) {
@@ -38,18 +43,16 @@ bool set(const char* variable) {
 }  // namespace
 
 Console::Console(bool speaks) : speaks_(speaks) {
+  if (speaks)
+    if (std::FILE* const terminal = terminal_of_mpirun()) messages_ = {terminal, std::fclose};
   const char* type = std::getenv("TERM");
-  live_ = speaks && stderr_is_terminal() && type != nullptr && std::string_view(type) != "dumb";
+  live_ = speaks && isatty(fileno(messages_.get())) && type != nullptr && std::string_view(type) != "dumb";
   colours_ = live_ && !set("NO_COLOR");
 }
 
 int Console::columns() const {
   winsize size{};
-  if (!live_ || ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0) return size.ws_col;
-  const int terminal = open(stderr_of_parent().c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
-  if (terminal < 0) return 0;
-  ioctl(terminal, TIOCGWINSZ, &size);
-  ::close(terminal);
+  if (live_) ioctl(fileno(messages_.get()), TIOCGWINSZ, &size);
   return size.ws_col;
 }
 
@@ -66,7 +69,7 @@ int Console::close() {
 }
 
 void Console::raw_error(std::string_view text) const {
-  if (speaks_) std::fwrite(text.data(), 1, text.size(), stderr);
+  if (speaks_) std::fwrite(text.data(), 1, text.size(), messages_.get());
 }
 
 void Console::note(std::string_view text) { line("", "", text); }
@@ -80,13 +83,13 @@ void Console::line(std::string_view colour, std::string_view label, std::string_
   // One write per line: lines of several processes do not mix.
   const std::string line =
       fmt::format("{}rodsweep: {}{}{}\n", coloured ? colour : "", label, printable(text), coloured ? "\x1b[0m" : "");
-  std::fwrite(line.data(), 1, line.size(), stderr);
+  std::fwrite(line.data(), 1, line.size(), messages_.get());
 }
 
 void Console::status(std::string_view text) {
   if (!live_ || (text.empty() && !status_shown_)) return;
   const std::string line = fmt::format("\r\x1b[K{}", text);
-  std::fwrite(line.data(), 1, line.size(), stderr);
+  std::fwrite(line.data(), 1, line.size(), messages_.get());
   status_shown_ = !text.empty();
 }
 

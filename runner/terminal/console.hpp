@@ -1,9 +1,11 @@
 // The program's output: results on stdout, progress and warnings on stderr. Only one rank prints.
 // close() returns the first error on stdout; errors on stderr are ignored. Text other than raw is made printable().
-// Detects whether stderr is a terminal, also through mpirun's pipe between rank and terminal; respects NO_COLOR and
-// TERM=dumb.
+// Between rank and terminal, mpirun has a pipe; Open MPI 5 passes on whole lines only. So a rank writes its messages to
+// the terminal of its mpirun itself. Respects NO_COLOR and TERM=dumb.
 #pragma once
 
+#include <cstdio>
+#include <memory>
 #include <string_view>
 
 namespace rodsweep {
@@ -30,6 +32,7 @@ class Console {
   void line(std::string_view colour, std::string_view label, std::string_view text);
 
   bool speaks_, live_, colours_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> messages_{stderr, [](std::FILE*) { return 0; }};
   bool status_shown_ = false;
   int failure_ = 0;  ///< errno of the first failed write to stdout
 };

@@ -1,5 +1,6 @@
 // The reading functions of runner/training/model_file.hpp.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

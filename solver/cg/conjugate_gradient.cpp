@@ -42,7 +42,6 @@ PCType pc_type(Preconditioner p) {
   switch (p) {
     case Preconditioner::none: return PCNONE;
     case Preconditioner::jacobi: return PCJACOBI;
-    case Preconditioner::point_block_jacobi: return PCPBJACOBI;
     case Preconditioner::icc: return PCICC;
     default: return PCSHELL;
   }
@@ -97,7 +96,7 @@ struct ConjugateGradient::Impl {
   CgSettings settings;
   VecHandle b, x, scratch;
   MatHandle product;
-  MatHandle entries;  ///< copy of the blocks for PETSc's preconditioners that need them; else null
+  MatHandle entries;  ///< copy of the upper blocks for PETSc's icc; else null
   Shell own;
   Projected projected;
   PcHandle plain, shell;  ///< the preconditioner; with projections, once used
@@ -115,8 +114,7 @@ struct ConjugateGradient::Impl {
         x(create_vector(a.unknowns())),
         scratch(create_vector(a.unknowns())),
         product(create_operator(op)) {
-    if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
-    if (settings.preconditioner == Preconditioner::icc) create_entries(true);
+    if (settings.preconditioner == Preconditioner::icc) create_entries();
     own.preconditioner = settings.make_given ? settings.make_given()
                                              : block_preconditioner(settings.preconditioner, a, settings.fill_levels);
 
@@ -128,11 +126,10 @@ struct ConjugateGradient::Impl {
     if (own.preconditioner) set_shell(plain, apply_shell, &own);
   }
 
-  void create_entries(bool symmetric) {
+  void create_entries() {
     std::vector<PetscInt> start{0}, columns;
     for (int row = 0; row < a.block_rows(); ++row) {
-      for (int k = a.row_begin(row); k < a.row_end(row); ++k)
-        if (!symmetric || a.column(k) >= row) columns.push_back(a.column(k));
+      for (int k = a.diagonal(row); k < a.row_end(row); ++k) columns.push_back(a.column(k));
       start.push_back(static_cast<PetscInt>(columns.size()));
     }
     const PetscInt n = a.unknowns();
@@ -140,13 +137,9 @@ struct ConjugateGradient::Impl {
     petsc_check(MatCreate(PETSC_COMM_SELF, &made), "MatCreate");
     entries.reset(made);
     petsc_check(MatSetSizes(entries, n, n, n, n), "MatSetSizes");
-    petsc_check(MatSetType(entries, symmetric ? MATSEQSBAIJ : MATSEQBAIJ), "MatSetType");
-    if (symmetric)
-      petsc_check(MatSeqSBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
-                  "MatSeqSBAIJSetPreallocationCSR");
-    else
-      petsc_check(MatSeqBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
-                  "MatSeqBAIJSetPreallocationCSR");
+    petsc_check(MatSetType(entries, MATSEQSBAIJ), "MatSetType");
+    petsc_check(MatSeqSBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
+                "MatSeqSBAIJSetPreallocationCSR");
     use_our_vectors(entries);
   }
 
@@ -155,10 +148,8 @@ struct ConjugateGradient::Impl {
     stale = false;
     own.positive = !own.preconditioner || own.preconditioner->set_up(a);
     if (entries) copy_entries();
-    // Tells PETSc that the entries are new; without it the old preconditioner is kept silently.
-    Mat changed = entries ? entries : product;
-    petsc_check(MatAssemblyBegin(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin");
-    petsc_check(MatAssemblyEnd(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
+    // Without it PETSc keeps the old preconditioner silently.
+    petsc_check(entries_changed(entries ? entries : product), "PetscObjectStateIncrease");
   }
 
   void use(Deflation* deflation) {
@@ -199,19 +190,14 @@ struct ConjugateGradient::Impl {
   }
 
   void copy_entries() {
-    // PETSc's blocks: column-major, unpadded, in block-row order; the symmetric format holds the upper blocks.
-    const bool symmetric = settings.preconditioner == Preconditioner::icc;
+    // PETSc's blocks of the upper triangle: column-major, unpadded, in block-row order.
     PetscScalar* out = nullptr;
-    petsc_check(symmetric ? MatSeqSBAIJGetArray(entries, &out) : MatSeqBAIJGetArray(entries, &out),
-                "MatSeqBAIJGetArray");
+    petsc_check(MatSeqSBAIJGetArray(entries, &out), "MatSeqSBAIJGetArray");
     PetscScalar* next = out;
     for (int row = 0; row < a.block_rows(); ++row)
-      for (int k = a.row_begin(row); k < a.row_end(row); ++k) {
-        if (symmetric && a.column(k) < row) continue;
+      for (int k = a.diagonal(row); k < a.row_end(row); ++k)
         for (const Lane8& column : a.blocks[at(k)].column) store6(std::exchange(next, next + 6), column);
-      }
-    petsc_check(symmetric ? MatSeqSBAIJRestoreArray(entries, &out) : MatSeqBAIJRestoreArray(entries, &out),
-                "MatSeqBAIJRestoreArray");
+    petsc_check(MatSeqSBAIJRestoreArray(entries, &out), "MatSeqSBAIJRestoreArray");
   }
 
   bool is_of_the_user() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 #include "solver/cg/petsc_check.hpp"
@@ -22,7 +23,7 @@ PetscErrorCode dot(Vec x, Vec y, PetscScalar* out) noexcept;
 
 template <class... Vecs>
 bool ours(Vecs... vectors) {
-  return (... && (vectors->ops->dot == dot));
+  return (... && (vectors->ops->dot == dot && reinterpret_cast<std::uintptr_t>(lanes(vectors)) % alignof(Lane8) == 0));
 }
 
 double product(Vec x, Vec y) {
@@ -80,14 +81,26 @@ PetscErrorCode copy_entries(Vec x, Vec y) noexcept {
   return 0;
 }
 
-PetscErrorCode release(void* memory) noexcept {
+PetscErrorCode (*other_destroy)(Vec) = nullptr;  ///< PETSc's own
+
+PetscErrorCode destroy(Vec v) noexcept {
+  double* const memory = vector_data(v);
+  const PetscErrorCode code = other_destroy(v);
   std::free(memory);
-  return 0;
+  return code;
 }
 
 PetscErrorCode create(PetscInt size, Vec* out) noexcept;
 
 PetscErrorCode duplicate(Vec v, Vec* out) noexcept { return create(v->map->n, out); }
+
+/// PETSc 3.22 and newer would put all of them in one block of memory, where they are not aligned.
+PetscErrorCode duplicate_vectors(Vec v, PetscInt count, Vec* out[]) noexcept {
+  if (const PetscErrorCode code = PetscMalloc1(count, out)) return code;
+  for (PetscInt i = 0; i < count; ++i)
+    if (const PetscErrorCode code = duplicate(v, *out + i)) return code;
+  return 0;
+}
 
 PetscErrorCode create_vectors(Mat m, Vec* right, Vec* left) noexcept {
   PetscInt rows = 0;
@@ -102,18 +115,16 @@ PetscErrorCode create(PetscInt size, Vec* out) noexcept {
   Lane8* const memory = static_cast<Lane8*>(std::aligned_alloc(alignof(Lane8), count * sizeof(Lane8)));
   if (!memory) return PETSC_ERR_MEM;
   std::fill_n(memory, count, Lane8{});
-  PetscContainer owner = nullptr;
-  PetscErrorCode code = PetscContainerCreate(PETSC_COMM_SELF, &owner);
-  if (code == 0) code = PetscContainerSetPointer(owner, memory);
-  if (code == 0) code = PetscContainerSetUserDestroy(owner, release);
-  if (code == 0) code = VecCreateSeqWithArray(PETSC_COMM_SELF, 1, size, reinterpret_cast<double*>(memory), out);
-  if (code == 0)
-    code = PetscObjectCompose(reinterpret_cast<PetscObject>(*out), "entries", reinterpret_cast<PetscObject>(owner));
-  if (code == 0) code = PetscContainerDestroy(&owner);  // the vector owns it now
-  if (code != 0) return code;
+  if (const PetscErrorCode code =
+          VecCreateSeqWithArray(PETSC_COMM_SELF, 1, size, reinterpret_cast<double*>(memory), out)) {
+    std::free(memory);
+    return code;
+  }
 
   _VecOps& ops = *(*out)->ops;
-  if (!other_norm) other_norm = ops.norm;
+  other_norm = ops.norm;
+  other_destroy = ops.destroy;
+  ops.destroy = destroy;
   ops.dot = ops.tdot = ops.dot_local = ops.tdot_local = dot;
   ops.norm = ops.norm_local = norm;
   ops.axpy = axpy;
@@ -121,6 +132,7 @@ PetscErrorCode create(PetscInt size, Vec* out) noexcept {
   ops.pointwisemult = pointwise_multiply;
   ops.copy = copy_entries;
   ops.duplicate = duplicate;
+  ops.duplicatevecs = duplicate_vectors;
   return 0;
 }
 
@@ -163,6 +175,7 @@ void use_our_vectors(Mat m) {
 double* vector_data(Vec v) { return *static_cast<double**>(v->data); }
 
 PetscErrorCode entries_changed(Vec v) { return PetscObjectStateIncrease(reinterpret_cast<PetscObject>(v)); }
+PetscErrorCode entries_changed(Mat m) { return PetscObjectStateIncrease(reinterpret_cast<PetscObject>(m)); }
 
 void copy(const VectorX& from, Vec to) {
   std::copy_n(from.data(), from.size(), vector_data(to));

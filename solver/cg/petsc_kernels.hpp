@@ -6,9 +6,11 @@
 // a solve must be of this kind: duplicates are, and so are the vectors of a matrix after use_our_vectors(). A kernel
 // returns PETSC_ERR_ARG_WRONG for any other vector.
 //
-// The matrix is a BlockMatrix of which PETSc sees only a product, with or without the blocks, and a diagonal. It is its own
-// matrix class, not a MATSHELL. A MATSHELL looks up its context by name and checks for scalings and
-// shifts in every product. On short rods that costs as much as the product itself.
+// The matrix is a BlockMatrix of which PETSc sees only a product, with or without the blocks, and a diagonal. It is its
+// own matrix class, not a MATSHELL. A MATSHELL looks up its context by name and checks for scalings and shifts in every
+// product. On short rods that costs as much as the product itself.
+//
+// All that rodsweep uses of PETSc's private headers is in the source of this header. Tried with PETSc 3.18, 3.22, 3.25.
 #pragma once
 
 #include <petscmat.h>
@@ -28,6 +30,7 @@ void use_our_vectors(Mat m);
 /// The entries, without PETSc's access bookkeeping. Call entries_changed() after writing.
 double* vector_data(Vec v);
 PetscErrorCode entries_changed(Vec v);
+PetscErrorCode entries_changed(Mat m);
 
 void copy(const VectorX& from, Vec to);
 void add(Vec from, VectorX& to);
@@ -44,7 +47,7 @@ struct BlockOperator {
 /// Approximate time of a CG iteration in nanoseconds, for is_interrupted().
 inline std::int64_t work_of_iteration(const BlockMatrix& a) { return 10 * static_cast<std::int64_t>(a.blocks.size()); }
 
-/// A matrix with the product of `op`. Call MatAssemblyBegin() and MatAssemblyEnd() when entries change.
+/// A matrix with the product of `op`. Call entries_changed() when they change.
 Mat create_operator(BlockOperator& op);
 
 }  // namespace rodsweep
