@@ -56,6 +56,12 @@ Job job_of(const Json& job) { return parse_job(job.dump(), "job.json"); }
 
 Plan plan_of(const Json& job) { return Plan(job_of(job)); }
 
+std::optional<ParameterColumn> find_column(const Plan& plan, const std::string& path) {
+  for (const ParameterColumn& column : plan.parameters())
+    if (column.path == path) return column;
+  return std::nullopt;
+}
+
 std::string refusal_of_text(const std::string& text) {
   return message_of<JobError>([&] {
     const Job job = parse_job(text, "job.json");

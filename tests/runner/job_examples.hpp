@@ -2,7 +2,9 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "runner/plan/plan.hpp"
 
@@ -36,6 +38,14 @@ Json uniform(double a, double b);
 
 Job job_of(const Json& job);
 Plan plan_of(const Json& job);
+
+std::optional<ParameterColumn> find_column(const Plan& plan, const std::string& path);
+
+/// The values of a parameter in all tasks.
+template <class Value>
+std::vector<Value> values_of(const Plan& plan, const std::string& path) {
+  return std::get<ColumnValues<Value>>(find_column(plan, path).value().values).all();
+}
 
 /// The message of the `Error` that `call` throws; "" if it throws none.
 template <class Error, class Call>
