@@ -80,9 +80,6 @@ Json solve_by(const std::string& preconditioner, const std::string& graph, const
   return solve;
 }
 
-/// The record of the job's task of this number.
-TaskRecord evaluated(const Json& job, std::int64_t task = 0) { return record_of(plan_of(job), task); }
-
 /// Solves of all guesses that missed tolerances down to 1e-6, and of those that were not said to converge.
 int missed(const TaskRecord& record) {
   const std::vector<double>& ladder = tolerance_ladder();
@@ -118,16 +115,16 @@ TEST_CASE("every preconditioner solves every kind of graph, and residuals are wh
     for (const auto& [name, scene] : graphs.scenes()) {
       CAPTURE(preconditioner, name);
       const Json solve = solve_by(preconditioner, name, graphs);
-      const TaskRecord paired = evaluated(graphs.job(scene, solve, "paired"));
+      const TaskRecord paired = record_of(graphs.job(scene, solve, "paired"));
       INFO(paired.message);
       REQUIRE(paired.outcome == TaskOutcome::ok);
       CHECK(missed(paired) == 0);
       CHECK(converged(paired) > 10);
       CHECK(worst_converged(paired) <= 1.1e-8);
 
-      const TaskRecord closed = evaluated(graphs.job(scene, solve, "closed_loop"));
+      const TaskRecord closed = record_of(graphs.job(scene, solve, "closed_loop"));
       const TaskRecord direct =
-          evaluated(without("/guesses", graphs.job(scene, {{"method", "direct"}}, "closed_loop")));
+          record_of(without("/guesses", graphs.job(scene, {{"method", "direct"}}, "closed_loop")));
       INFO(closed.message);
       REQUIRE(closed.outcome == TaskOutcome::ok);
       CHECK(closed.steps.kinetic_energy_j.back() == Approx(direct.steps.kinetic_energy_j.back()).epsilon(1e-3));
@@ -183,10 +180,10 @@ TEST_CASE("what converged with a preconditioner that is not positive definite di
             {"method", "cg"},        {"preconditioner", "plugin"},
             {"tolerance", 1e-2},     {"norm", norm},
             {"max_iterations", 300}, {"plugin_preconditioner", {{"library", WATCHING_PLUGIN}, {"options", wrong}}}};
-        const TaskRecord paired = evaluated(graphs.job(scene, solve, "paired"));
+        const TaskRecord paired = record_of(graphs.job(scene, solve, "paired"));
         CHECK(worst_converged(paired) <= (norm == std::string("natural") ? 1e-5 : 1.1e-8));
         if (wrong == std::string("negative")) continue;  // CG may converge all the same
-        const TaskRecord closed = evaluated(graphs.job(scene, solve, "closed_loop"));
+        const TaskRecord closed = record_of(graphs.job(scene, solve, "closed_loop"));
         INFO(closed.message);
         CHECK((closed.outcome == TaskOutcome::indefinite || closed.outcome == TaskOutcome::iteration_limit));
       }
