@@ -1,7 +1,6 @@
 """Guesses and preconditioners in Python: those of `rodsweep new` are as good as the same of the program, they see the
 systems that `rodsweep systems` writes, their errors reach the user, and what they do to the process stays with them."""
 
-import json
 import os
 import re
 import signal
@@ -38,17 +37,6 @@ def guess(body):
 
 
 class WithPython(InAFolder):
-    def write(self, name, text):
-        with open(name, "w", encoding="utf-8") as file:
-            file.write(text)
-
-    def job(self, *guesses, **keys):
-        job = {"name": "s", "kind": "sweep", "scene": {"type": "bending_rod", "segments": 9, "length_m": 1,
-               "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6},
-               "time": {"step_s": 0.02, "steps": 10, "newton_iterations": 2}, "guesses": ["zero", *guesses], **keys}
-        self.write("s.json", json.dumps(job))
-        return "s.json"
-
     def error(self, text, code=3):
         """What the user is told of a guess with this text."""
         self.write("mine.py", text)
@@ -189,17 +177,6 @@ class Python(WithPython):
         self.assertEqual(sums["totals python mine"], sums["totals previous"])
         self.assertNotEqual(sums["totals previous"], sums["previous"])
 
-    def test_a_preconditioner_that_leaves_a_part_out_is_found(self):
-        self.write("mine.py", "class Preconditioner:\n    def __init__(self, rods, options): pass\n"
-                              "    def set_up(self, system): self.d = 1 / system.A.diagonal()\n"
-                              "    def apply(self, r):\n        z = self.d * r\n        z[6:] = 0\n        return z\n")
-        for norm in ("true_residual", "natural"):
-            self.ran("run", self.job(solve={"method": "cg", "preconditioner": "python", "tolerance": 1e-6, "norm": norm,
-                                            "python_preconditioner": {"file": "mine.py"}}, evaluation="closed_loop"),
-                     "-o", f"{norm}.h5", code=3)
-            with h5py.File(f"{norm}.h5") as file:
-                self.assertEqual(file["/tasks/outcome"][0].rstrip(b"\0"), b"indefinite")
-
     def test_a_file_that_is_opened_but_not_named_is_told_once_with_the_key_to_write(self):
         self.write("helper.py", "ONE = 1.0\n")
         self.write("other.txt", "1")
@@ -242,13 +219,6 @@ class Python(WithPython):
             said = self.ran("validate", job, env={**os.environ, "VIRTUAL_ENV": os.path.abspath("env")}).stderr
             words = f"env, of Python 3.1.4: its packages are not found by rodsweep's P{own[1:6]} {own[6:]}; make"
             self.assertEqual(words in said, bool(version), said)
-
-    def test_a_preconditioner_that_gives_no_numbers_is_named(self):
-        self.write("mine.py", "class Preconditioner:\n    def __init__(self, rods, options): pass\n"
-                              "    def apply(self, r): return r * float('nan')\n")
-        self.ran("run", self.job(solve={"method": "cg", "preconditioner": "python",
-                                        "python_preconditioner": {"file": "mine.py"}}), "-o", "s.h5", code=TASKS_FAILED)
-        self.assertIn("mine.py: apply() gave a vector that is not finite", self.message())
 
     def test_a_file_is_executed_once_and_each_task_has_an_instance(self):
         self.write("mine.py", "import numpy as np\nlog = open('log', 'a')\nprint('file', file=log, flush=True)\n"
