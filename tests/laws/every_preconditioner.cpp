@@ -25,16 +25,13 @@ class Preconditioner:
 class Graphs {
  public:
   Graphs() {
-    std::ofstream(folder_ / "rods.csv") << "0,0,0\n1,0,0\n\n0,0,1\n0.6,0,1\n";
     std::ofstream(folder_ / "diagonal.py") << python_diagonal;
-    const std::string curves = path("rods.csv");
     add("chain", R"({"type": "bending_rod", "segments": 10, "length_m": 1})");
     add("tree", R"({"type": "tree", "depth": 2, "branches": 2, "segments": 3, "length_m": 1})");
     add("loop", R"({"type": "ring", "segments": 12, "length_m": 2})");
     add("net", R"({"type": "net", "rows": 3, "columns": 3, "segments": 2, "mesh_m": 0.4})");
     add("lattice", R"({"type": "lattice", "nodes_x": 2, "segments": 3, "mesh_m": 0.4})");
-    add("rods of unequal length",
-        R"({"type": "curves", "segment_m": 0.1, "held_at_m": [[0, 0, 0], [0, 0, 1]], "curves": ")" + curves + "\"}");
+    add("rods of unequal length", two_rods(path("rods.csv")));
   }
   std::string path(const std::string& name) const { return (folder_ / name).native(); }
   const std::map<std::string, Json>& scenes() const { return scenes_; }
@@ -49,8 +46,9 @@ class Graphs {
   }
 
  private:
-  void add(const char* name, const std::string& scene) {
-    scenes_[name] = Json::parse(scene);
+  void add(const char* name, const char* scene) { add(name, Json::parse(scene)); }
+  void add(const char* name, const Json& scene) {
+    scenes_[name] = scene;
     scenes_[name].update(
         {{"radius_m", 0.02}, {"density_kg_m3", 1000}, {"youngs_modulus_pa", 1e7}, {"torsion_modulus_pa", 4e6}});
   }

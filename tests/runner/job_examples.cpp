@@ -1,5 +1,7 @@
 #include "tests/runner/job_examples.hpp"
 
+#include <fstream>
+
 namespace rodsweep {
 
 Json bending_scene() {
@@ -16,6 +18,13 @@ Json forest_scene() {
   return Json::parse(R"({"type": "forest", "rows": 1, "columns": 2, "spacing_m": 3, "depth": 1, "branches": 2,
                          "segments": 2, "length_m": 1, "radius_m": 0.05, "density_kg_m3": 1000,
                          "youngs_modulus_pa": 1e7, "torsion_modulus_pa": 1e7})");
+}
+
+Json two_rods(const std::filesystem::path& curves) {
+  std::ofstream(curves) << "0,0,0\n1,0,0\n\n0,0,1\n0.6,0,1\n";
+  return with("/curves", Json(curves.native()).dump(), Json::parse(R"({"type": "curves", "segment_m": 0.1,
+              "held_at_m": [[0, 0, 0], [0, 0, 1]], "radius_m": 0.02, "density_kg_m3": 1000,
+              "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6})"));
 }
 
 Json small_job() {

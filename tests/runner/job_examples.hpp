@@ -1,6 +1,7 @@
 // Jobs for tests: a small valid job, functions that change it, and its error message after a change.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -18,6 +19,9 @@ Json helix_scene();
 
 /// Two small trees, one rod each.
 Json forest_scene();
+
+/// Two rods of unequal length that are held at one end; writes the file of their curves.
+Json two_rods(const std::filesystem::path& curves);
 
 Json small_job();
 

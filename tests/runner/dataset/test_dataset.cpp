@@ -25,15 +25,12 @@ Json ragged_job() {
   return job;
 }
 
-/// Two rods of unequal length, which the wind blows and a floor catches.
+/// Two rods that the wind blows and a floor catches.
 Json uneven_job(const fs::path& curves) {
-  std::ofstream(curves) << "0,0,0\n1,0,0\n\n0,0,1\n0.6,0,1\n";
   Json job = data_job();
-  job["scene"] = Json::parse(R"({"type": "curves", "segment_m": 0.1, "held_at_m": [[0, 0, 0], [0, 0, 1]],
-      "radius_m": 0.02, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6,
-      "damping_per_s": 2, "contact": {}, "obstacles": [{"half_space": {"point_m": [0, -0.0201, 0]}}],
-      "wind": {"mean_m_s": [9, 0, 0], "turbulence_m_s": 2}})");
-  job["scene"]["curves"] = curves.native();
+  job["scene"] = two_rods(curves);
+  job["scene"].update(Json::parse(R"({"damping_per_s": 2, "wind": {"mean_m_s": [9, 0, 0], "turbulence_m_s": 2},
+      "contact": {}, "obstacles": [{"half_space": {"point_m": [0, -0.0201, 0]}}]})"));
   return job;
 }
 
