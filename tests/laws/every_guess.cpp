@@ -3,7 +3,6 @@
 // or on the order of tasks. A guess without a sample here does not compile.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <map>
 #include <string>
 #include <utility>
@@ -23,7 +22,7 @@ namespace rodsweep::test_every_guess {
 class Files {
  public:
   Files() {
-    write("rods.csv", "0,0,0\n1,0,0\n\n0,0,1\n0.6,0,1\n");
+    scene_ = two_rods(path("rods.csv"));
     Json data = job({});
     data.erase("guesses");
     data["kind"] = "dataset";
@@ -33,15 +32,7 @@ class Files {
   Json job(const Json& guesses, const Json& changes = Json::object()) const {
     Json made{{"name", "law"},
               {"kind", "sweep"},
-              {"scene",
-               {{"type", "curves"},
-                {"curves", path("rods.csv")},
-                {"segment_m", 0.1},
-                {"held_at_m", {{0, 0, 0}, {0, 0, 1}}},
-                {"radius_m", 0.02},
-                {"density_kg_m3", 1000},
-                {"youngs_modulus_pa", 1e6},
-                {"torsion_modulus_pa", 1e6}}},
+              {"scene", scene_},
               {"time", {{"step_s", 0.02}, {"steps", 5}, {"newton_iterations", 2}}},
               {"guesses", guesses}};
     made.update(changes, true);
@@ -49,9 +40,8 @@ class Files {
   }
 
  private:
-  void write(const char* name, const char* text) { std::ofstream(path(name)) << text; }
-
   TemporaryFolder folder_;
+  Json scene_;
 };
 
 // The samples, found by the kind of guess.

@@ -25,16 +25,13 @@ class Preconditioner:
 class Graphs {
  public:
   Graphs() {
-    std::ofstream(folder_ / "rods.csv") << "0,0,0\n1,0,0\n\n0,0,1\n0.6,0,1\n";
     std::ofstream(folder_ / "diagonal.py") << python_diagonal;
-    const std::string curves = path("rods.csv");
     add("chain", R"({"type": "bending_rod", "segments": 10, "length_m": 1})");
     add("tree", R"({"type": "tree", "depth": 2, "branches": 2, "segments": 3, "length_m": 1})");
     add("loop", R"({"type": "ring", "segments": 12, "length_m": 2})");
     add("net", R"({"type": "net", "rows": 3, "columns": 3, "segments": 2, "mesh_m": 0.4})");
     add("lattice", R"({"type": "lattice", "nodes_x": 2, "segments": 3, "mesh_m": 0.4})");
-    add("rods of unequal length",
-        R"({"type": "curves", "segment_m": 0.1, "held_at_m": [[0, 0, 0], [0, 0, 1]], "curves": ")" + curves + "\"}");
+    add("rods of unequal length", two_rods(path("rods.csv")));
   }
   std::string path(const std::string& name) const { return (folder_ / name).native(); }
   const std::map<std::string, Json>& scenes() const { return scenes_; }
@@ -49,8 +46,9 @@ class Graphs {
   }
 
  private:
-  void add(const char* name, const std::string& scene) {
-    scenes_[name] = Json::parse(scene);
+  void add(const char* name, const char* scene) { add(name, Json::parse(scene)); }
+  void add(const char* name, const Json& scene) {
+    scenes_[name] = scene;
     scenes_[name].update(
         {{"radius_m", 0.02}, {"density_kg_m3", 1000}, {"youngs_modulus_pa", 1e7}, {"torsion_modulus_pa", 4e6}});
   }
@@ -79,9 +77,6 @@ Json solve_by(const std::string& preconditioner, const std::string& graph, const
     solve[preconditioner + "_preconditioner"] = file->second;
   return solve;
 }
-
-/// The record of the job's task of this number.
-TaskRecord evaluated(const Json& job, std::int64_t task = 0) { return record_of(plan_of(job), task); }
 
 /// Solves of all guesses that missed tolerances down to 1e-6, and of those that were not said to converge.
 int missed(const TaskRecord& record) {
@@ -118,16 +113,16 @@ TEST_CASE("every preconditioner solves every kind of graph, and residuals are wh
     for (const auto& [name, scene] : graphs.scenes()) {
       CAPTURE(preconditioner, name);
       const Json solve = solve_by(preconditioner, name, graphs);
-      const TaskRecord paired = evaluated(graphs.job(scene, solve, "paired"));
+      const TaskRecord paired = record_of(graphs.job(scene, solve, "paired"));
       INFO(paired.message);
       REQUIRE(paired.outcome == TaskOutcome::ok);
       CHECK(missed(paired) == 0);
       CHECK(converged(paired) > 10);
       CHECK(worst_converged(paired) <= 1.1e-8);
 
-      const TaskRecord closed = evaluated(graphs.job(scene, solve, "closed_loop"));
+      const TaskRecord closed = record_of(graphs.job(scene, solve, "closed_loop"));
       const TaskRecord direct =
-          evaluated(without("/guesses", graphs.job(scene, {{"method", "direct"}}, "closed_loop")));
+          record_of(without("/guesses", graphs.job(scene, {{"method", "direct"}}, "closed_loop")));
       INFO(closed.message);
       REQUIRE(closed.outcome == TaskOutcome::ok);
       CHECK(closed.steps.kinetic_energy_j.back() == Approx(direct.steps.kinetic_energy_j.back()).epsilon(1e-3));
@@ -183,10 +178,10 @@ TEST_CASE("what converged with a preconditioner that is not positive definite di
             {"method", "cg"},        {"preconditioner", "plugin"},
             {"tolerance", 1e-2},     {"norm", norm},
             {"max_iterations", 300}, {"plugin_preconditioner", {{"library", WATCHING_PLUGIN}, {"options", wrong}}}};
-        const TaskRecord paired = evaluated(graphs.job(scene, solve, "paired"));
+        const TaskRecord paired = record_of(graphs.job(scene, solve, "paired"));
         CHECK(worst_converged(paired) <= (norm == std::string("natural") ? 1e-5 : 1.1e-8));
         if (wrong == std::string("negative")) continue;  // CG may converge all the same
-        const TaskRecord closed = evaluated(graphs.job(scene, solve, "closed_loop"));
+        const TaskRecord closed = record_of(graphs.job(scene, solve, "closed_loop"));
         INFO(closed.message);
         CHECK((closed.outcome == TaskOutcome::indefinite || closed.outcome == TaskOutcome::iteration_limit));
       }

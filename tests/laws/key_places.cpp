@@ -197,7 +197,7 @@ Inputs::Inputs() {
       names_[kind].push_back(name);
     }
   };
-  const fs::path models = RODSWEEP_MODELS;
+  const fs::path models = PRETRAINED;
   copies(FileKind::model, {{models / "rods.h5", "a model.h5"},
                            {models / "lattices.h5", "more/b model.h5"},
                            {models / "bending-state.h5", "a state.h5"},

@@ -77,18 +77,6 @@ class Extending(ExtendCase):
             self.assertEqual(h5["timing/tasks/source_task"][:].tolist(), [0, 1, 2, -1, 3, 4, 5, -1, 6, 7, 8, -1])
             self.assertEqual(h5["timing/tasks/run"][:].tolist(), [0, 0, 1, 2] * 2 + [1, 1, 1, 2])
 
-    def test_guesses_that_vary(self):
-        varying = {"grid": ["previous", {"oracle": {"error": 0.1}}]}
-        wider = {"grid": [{"oracle": {"error": 0.01}}, "previous", {"oracle": {"error": 0.1}}]}
-        old = self.old("vary", guesses=["zero", varying])
-        self.extend(self.new("wider", guesses=["zero", {**wider, "label": "other"}]), old, (12, 8, 4), ranks=(0,))
-
-    def test_a_closed_loop_and_a_direct_simulation(self):
-        method = {"method": {"grid": ["direct", "cg"]}}
-        old = self.old("loop", evaluation="closed_loop", solve=method)
-        longer = self.new("longer", evaluation="closed_loop", solve=method, samples=3)
-        self.extend(longer, old, (24, 16, 8))
-
     def test_a_data_set_with_more_samples(self):
         small = {"segments": (6, 9), "steps": 5}
         path = data_job("few", samples=2, **small)

@@ -57,13 +57,6 @@ class Merging(SweepCase):
         self.rodsweep(0, "merge", *others, "results/counted-2of4.h5", "-o", "results/counted.h5")
         self.assertEqual(status("results/counted.h5")["shard"], None)
 
-    def test_costs_are_shared_out(self):
-        path = job("costs", samples=1, segments=[5] * 4 + [50] * 4)
-        for file in self.shards(path, 4):
-            with h5py.File(file) as results:
-                done = results["tasks/state"][:] == 1
-                self.assertEqual(sorted(results["tasks/parameters/scene.segments"][done]), [5, 50])
-
     def test_what_is_missing_is_left_to_do(self):
         path = job("missing")
         files = self.shards(path, 3, (1, 3))

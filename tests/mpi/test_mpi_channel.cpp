@@ -9,6 +9,7 @@
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/worker.hpp"
 #include "runner/mpi/mpi_session.hpp"
+#include "tests/mpi/world.hpp"
 
 using namespace rodsweep;
 
@@ -26,24 +27,15 @@ extern "C" int MPI_Comm_free(MPI_Comm* comm) {
 
 namespace {
 
-struct World {
-  World() {
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-  }
-  int rank = 0, size = 1;
-};
-
 /// Runs `tasks` tasks; `before` is called before each. Returns on rank 0 their outcomes, on all ranks how often each
 /// task ran on any rank.
 std::pair<Dispatch, std::vector<int>> run(
     int tasks, const std::function<int()>& signal,
     const std::function<void(const StopRequested&)>& before = [](auto&) {}) {
-  const World world;
   MpiChannel channel(MPI_COMM_WORLD);
   std::vector<int> here(tasks, 0), everywhere(tasks, 0);
   Dispatch dispatch;
-  if (world.rank > 0) {
+  if (own_rank() > 0) {
     const TaskBody body = [&](std::int64_t task, const StopRequested& stop) -> TaskResult {
       before(stop);
       if (stop()) return {};
@@ -56,7 +48,7 @@ std::pair<Dispatch, std::vector<int>> run(
     std::vector<PendingTask> pending;
     for (int i = 0; i < tasks; ++i) pending.push_back({i, 1.0 + i % 5});
     Console console(false);
-    Progress progress(console, {tasks, 0, 0, 3.0 * tasks, std::max(1, world.size - 1)}, Progress::Clock::now());
+    Progress progress(console, {tasks, 0, 0, 3.0 * tasks, std::max(1, rank_count() - 1)}, Progress::Clock::now());
     Master master(channel, std::move(pending), progress, [] { return 0; });
     master.run();
     dispatch = master.dispatch();
@@ -68,11 +60,10 @@ std::pair<Dispatch, std::vector<int>> run(
 }  // namespace
 
 TEST_CASE("over MPI every task is run exactly once and every outcome arrives") {
-  const World world;
-  if (world.size == 1) return;
+  if (rank_count() == 1) return;
   const auto [dispatch, runs] = run(2000, [] { return 0; });
   CHECK(std::all_of(runs.begin(), runs.end(), [](int n) { return n == 1; }));
-  if (world.rank == 0) {
+  if (own_rank() == 0) {
     CHECK(dispatch.left == 0);
     CHECK(dispatch.finished[static_cast<std::size_t>(TaskOutcome::ok)] == 1714);
     CHECK(dispatch.finished[static_cast<std::size_t>(TaskOutcome::diverged)] == 286);
@@ -80,19 +71,18 @@ TEST_CASE("over MPI every task is run exactly once and every outcome arrives") {
 }
 
 TEST_CASE("over MPI a signal to one worker stops all, and no task is lost or counted twice") {
-  const World world;
-  if (world.size == 1) return;
+  if (rank_count() == 1) return;
   // The others wait in their 10th task, so that some tasks are left when rank 1 hears of the signal, however slow it is.
   int asked = 0, begun = 0;
   const auto [dispatch, runs] = run(
-      2000, [&] { return world.rank == 1 && ++asked > 100 ? 15 : 0; },
+      2000, [&] { return own_rank() == 1 && ++asked > 100 ? 15 : 0; },
       [&](const StopRequested& stop) {
-        if (world.rank > 1 && ++begun >= 10)
+        if (own_rank() > 1 && ++begun >= 10)
           while (!stop()) std::this_thread::yield();
       });
   const int finished = std::accumulate(runs.begin(), runs.end(), 0);
   CHECK(std::all_of(runs.begin(), runs.end(), [](int n) { return n <= 1; }));
-  if (world.rank == 0) {
+  if (own_rank() == 0) {
     CHECK(dispatch.signal == 15);
     CHECK(dispatch.left == 2000 - finished);
     CHECK(dispatch.left > 0);

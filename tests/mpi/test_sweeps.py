@@ -132,17 +132,6 @@ class Watching(SweepCase):
 class Refusals(SweepCase):
     """For their words see tests/runner/file/test_file_refusals.cpp."""
 
-    def test_what_is_there_stays_as_it_is(self):
-        path, other = job(), job("second", steps=7)
-        self.rodsweep(2, "run", path, "-o", "mine.h5")
-        with open("notes.h5", "w") as file:
-            file.write("not HDF5 at all")
-        before = [checksum(name) for name in ("mine.h5", "notes.h5")]
-        self.assert_refused_once(3, "run", path, "-o", "mine.h5", says="mine.h5 exists already")
-        self.assert_refused_once(3, "run", other, "-o", "mine.h5", "--resume", says="mine.h5 holds the results of")
-        self.assert_refused_once(3, "run", path, "-o", "notes.h5", "--resume", says="notes.h5")
-        self.assertEqual([checksum(name) for name in ("mine.h5", "notes.h5")], before)
-
     def test_where_there_are_no_locks_a_file_that_is_being_written_is_known_by_its_time(self):
         failing = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_LOCKS": "1"}
         self.enterContext(unittest.mock.patch.dict(os.environ, failing))
@@ -162,12 +151,6 @@ class Refusals(SweepCase):
         path = job("bad", time={"step_s": 0.02, "steps": -4})
         self.assert_refused_once(3, "run", path, "-o", "bad.h5", says="time.steps")
         self.assertFalse(os.path.exists("bad.h5"))
-
-    def test_paths_where_nothing_is_or_can_be_are_refused_once(self):
-        path = job()
-        self.assert_refused_once(3, "run", "nowhere.json", says="nowhere.json")
-        self.assert_refused_once(3, "run", path, "-o", path + "/out.h5", says=path + "/out.h5 cannot be created")
-        self.assertFalse(os.path.exists("results"))
 
 
 class Outcomes(SweepCase):
@@ -224,16 +207,6 @@ class Outcomes(SweepCase):
         plan = json.loads(rodsweep(0, "plan", path, "--json").stdout)
         self.assertGreater(plan["probes"][-1]["memory_bytes"], 448e6)
         self.assertRegex(rodsweep(0, "plan", path).stdout, r"memory .*\b[45]\d\d MB .*\d+ processes\n")
-
-    def test_resume_starts_a_sweep_that_has_no_file_and_does_nothing_to_a_finished_one(self):
-        path = job("fresh")
-        self.rodsweep(2, "run", path, "--resume")
-        with open("results/fresh.h5", "rb") as file:
-            finished = file.read()
-        self.rodsweep(3, "run", path, "--resume")
-        with open("results/fresh.h5", "rb") as file:
-            self.assertEqual(file.read(), finished)
-        self.assertEqual([s["tasks"] for s in status("results/fresh.h5")["runs"]], [6])
 
     def test_more_workers_than_cores_are_warned_of_and_marked(self):
         ranks = len(os.sched_getaffinity(0)) + 2

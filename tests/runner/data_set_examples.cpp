@@ -14,6 +14,8 @@ TaskRecord record_of(const Plan& plan, std::int64_t index) {
   return record;
 }
 
+TaskRecord record_of(const Json& job, std::int64_t task) { return record_of(plan_of(job), task); }
+
 std::vector<std::size_t> rows_run(const TaskRecord& record) {
   std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < record.solves.newton.size(); ++row)

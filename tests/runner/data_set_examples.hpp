@@ -7,6 +7,7 @@ namespace rodsweep {
 
 /// The record of an evaluated task; throws if the evaluation is cancelled.
 TaskRecord record_of(const Plan& plan, std::int64_t task = 0);
+TaskRecord record_of(const Json& job, std::int64_t task = 0);
 
 /// Rows of the solves that ran.
 std::vector<std::size_t> rows_run(const TaskRecord& record);

@@ -1,25 +1,14 @@
 #include "tests/runner/file_examples.hpp"
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <random>
 #include <stdexcept>
 
 #include "runner/file/columns.hpp"
 #include "runner/file/layout.hpp"
 
 namespace rodsweep {
-
-TemporaryFolder::TemporaryFolder()
-    : path_(std::filesystem::temp_directory_path() /
-            ("rodsweep-test-" + std::to_string(getpid()) + "-" + std::to_string(std::random_device()()))) {
-  std::filesystem::create_directory(path_);
-}
-
-TemporaryFolder::~TemporaryFolder() { std::filesystem::remove_all(path_); }
 
 Json full_job() {
   Json job = with("/scene/segments", R"({"grid": [4, 5, 7]})");

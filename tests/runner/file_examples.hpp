@@ -1,5 +1,4 @@
-// For tests of results files: a temporary folder, plans with every kind of dataset, and records whose values identify
-// their place.
+// For tests of results files: plans with every kind of dataset, and records whose values identify their place.
 #pragma once
 
 #include <filesystem>
@@ -9,23 +8,9 @@
 #include "runner/file/hdf5.hpp"
 #include "runner/file/record.hpp"
 #include "runner/file/results_file.hpp"
-#include "tests/runner/job_examples.hpp"
+#include "tests/runner/job_folder.hpp"
 
 namespace rodsweep {
-
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder();
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// 6 tasks of 4, 5 and 7 segments, with rows in every group of a sweep's file.
 Json full_job();

@@ -1,5 +1,7 @@
 #include "tests/runner/job_examples.hpp"
 
+#include <fstream>
+
 namespace rodsweep {
 
 Json bending_scene() {
@@ -16,6 +18,13 @@ Json forest_scene() {
   return Json::parse(R"({"type": "forest", "rows": 1, "columns": 2, "spacing_m": 3, "depth": 1, "branches": 2,
                          "segments": 2, "length_m": 1, "radius_m": 0.05, "density_kg_m3": 1000,
                          "youngs_modulus_pa": 1e7, "torsion_modulus_pa": 1e7})");
+}
+
+Json two_rods(const std::filesystem::path& curves) {
+  std::ofstream(curves) << "0,0,0\n1,0,0\n\n0,0,1\n0.6,0,1\n";
+  return with("/curves", Json(curves.native()).dump(), Json::parse(R"({"type": "curves", "segment_m": 0.1,
+              "held_at_m": [[0, 0, 0], [0, 0, 1]], "radius_m": 0.02, "density_kg_m3": 1000,
+              "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6})"));
 }
 
 Json small_job() {
@@ -55,6 +64,12 @@ Json uniform(double a, double b) { return {{"uniform", {a, b}}}; }
 Job job_of(const Json& job) { return parse_job(job.dump(), "job.json"); }
 
 Plan plan_of(const Json& job) { return Plan(job_of(job)); }
+
+std::optional<ParameterColumn> find_column(const Plan& plan, const std::string& path) {
+  for (const ParameterColumn& column : plan.parameters())
+    if (column.path == path) return column;
+  return std::nullopt;
+}
 
 std::string refusal_of_text(const std::string& text) {
   return message_of<JobError>([&] {

@@ -1,8 +1,11 @@
 // Jobs for tests: a small valid job, functions that change it, and its error message after a change.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "runner/plan/plan.hpp"
 
@@ -16,6 +19,9 @@ Json helix_scene();
 
 /// Two small trees, one rod each.
 Json forest_scene();
+
+/// Two rods of unequal length that are held at one end; writes the file of their curves.
+Json two_rods(const std::filesystem::path& curves);
 
 Json small_job();
 
@@ -36,6 +42,14 @@ Json uniform(double a, double b);
 
 Job job_of(const Json& job);
 Plan plan_of(const Json& job);
+
+std::optional<ParameterColumn> find_column(const Plan& plan, const std::string& path);
+
+/// The values of a parameter in all tasks.
+template <class Value>
+std::vector<Value> values_of(const Plan& plan, const std::string& path) {
+  return std::get<ColumnValues<Value>>(find_column(plan, path).value().values).all();
+}
 
 /// The message of the `Error` that `call` throws; "" if it throws none.
 template <class Error, class Call>

@@ -1,32 +1,45 @@
-// For tests of jobs that name files: a temporary folder with a job.
+// Temporary folders for tests, and those of jobs that name files.
 #pragma once
 
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <string>
 
 #include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
 
-/// A temporary folder for job.json and the files that the job names.
-class JobFolder {
+class TemporaryFolder {
  public:
-  JobFolder() : path_(std::filesystem::temp_directory_path() / ("rodsweep-inputs-" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_ / "models");
+  TemporaryFolder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("rodsweep-test-" + std::to_string(getpid()) + "-" + std::to_string(std::random_device()()))) {
+    std::filesystem::create_directory(path_);
   }
-  ~JobFolder() { std::filesystem::remove_all(path_); }
-  void write(const char* name, const char* text) const { std::ofstream(path_ / name) << text; }
-  Job job(const Json& job) const { return parse_job(job.dump(), path_ / "job.json"); }
-  std::string refusal(const Json& of) const {
-    return message_of<JobError>([&] { const Plan plan(job(of)); });
-  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   const std::filesystem::path& path() const { return path_; }
 
  private:
   std::filesystem::path path_;
+};
+
+/// A folder for job.json and the files that the job names.
+class JobFolder : public TemporaryFolder {
+ public:
+  JobFolder() { std::filesystem::create_directory(*this / "models"); }
+
+  void write(const char* name, const char* text) const { std::ofstream(*this / name) << text; }
+  Job job(const Json& job) const { return parse_job(job.dump(), *this / "job.json"); }
+  std::string refusal(const Json& of) const {
+    return message_of<JobError>([&] { const Plan plan(job(of)); });
+  }
 };
 
 }  // namespace rodsweep

@@ -12,7 +12,6 @@
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;
-using Catch::Matchers::Matches;
 
 namespace test_command_line {
 
@@ -72,31 +71,6 @@ TEST_CASE("the command that continues a sweep can be typed as it stands") {
   run.output = "out.h5";
   run.workers = 4;
   CHECK(run_line(run, ranks_for(4)) == "build/rodsweep run 'my job.json' -n 4 -o out.h5 --resume");
-}
-
-TEST_CASE("the other commands take their options") {
-  CHECK(std::get<PlanOptions>(parse({"plan", "a.json"})).probe);
-  CHECK_FALSE(std::get<PlanOptions>(parse({"plan", "a.json", "--no-probe"})).probe);
-  CHECK(std::get<PlanOptions>(parse({"plan", "a.json", "--json"})).json);
-  CHECK(std::get<ValidateOptions>(parse({"validate", "a.json", "b.json"})).jobs.size() == 2);
-  CHECK(std::get<ValidateOptions>(parse({"validate", "--later", "a.json"})).later);
-  CHECK(std::get<StatusOptions>(parse({"status", "a.h5", "--json"})).json);
-  CHECK(std::get<InfoOptions>(parse({"info", "a.h5", "--verify"})).verify);
-  CHECK(std::get<InfoOptions>(parse({"info", "a.h5", "--job"})).job);
-  CHECK(answer({"--version"}).code == ExitCode::ok);
-  CHECK_THAT(answer({"--version"}).text, Matches("rodsweep [0-9.]+ \\(revision [^)]+\\)\n  [^]*HDF5[^]*\n"));
-}
-
-TEST_CASE("the commands on results files take their options") {
-  const auto rerun = std::get<RerunOptions>(parse({"rerun", "a.h5", "12", "--trajectory-every", "4"}));
-  CHECK((rerun.file == "a.h5" && rerun.task == 12 && rerun.trajectory_every == 4 && !rerun.output));
-  CHECK(rerun.command == "build/rodsweep rerun a.h5 12 --trajectory-every 4");
-}
-
-TEST_CASE("a word that is not a command names a program of its own") {
-  const auto query = std::get<ExternalCommand>(parse({"query", "a.h5", "--csv"}));
-  CHECK(query.name == "query");
-  CHECK(query.words == std::vector<std::string>{"a.h5", "--csv"});
 }
 
 TEST_CASE("a program is looked for beside this one, in the source tree, and on the path") {

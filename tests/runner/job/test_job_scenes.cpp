@@ -1,5 +1,5 @@
-// Rings, nets, lattices and physical stretch in jobs: scenes made from them, refusals before the run. jobs/schema.json
-// has their defaults.
+// Scenes in jobs: the structs and segments that their keys become. jobs/schema.json has their defaults; test_job_refusals.cpp
+// and inputs/ have what is refused.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -7,6 +7,7 @@
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;
+using Catch::Contains;
 
 namespace test_job_scenes {
 
@@ -26,52 +27,64 @@ Json lattice_job() {
   return job_with_scene(R"("type": "lattice", "nodes_x": 3, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05)");
 }
 
-/// The error message of check_guesses() for a job; "" if there is none.
-std::string refusal_of_loops(const Json& job) {
-  return message_of<JobError>([&] { check_guesses(plan_of(job)); });
+Json tree_job(const std::string& type = "tree", const std::string& more = "") {
+  return job_with_scene("\"type\": \"" + type + R"(", "depth": 2, "branches": 3, "segments": 2, "length_m": 2,
+      "radius_m": 0.1)" +
+                        more);
 }
 
-Json guess_of_model(Json job) {
-  job["guesses"].push_back({{"copingnet", {{"model", RODSWEEP_JOBS "/../network/pretrained/bending-paper.h5"}}}});
-  return job;
+/// The small job with contact and with these obstacles.
+Json job_with_obstacles(const std::string& obstacles) {
+  return with("/scene/obstacles", obstacles, with("/scene/contact", R"({"friction": 0.3})"));
+}
+
+template <class Kind = BendingRod>
+Kind spec_of(const Plan& plan, std::int64_t task = 0) {
+  return std::get<Kind>(plan.spec(task).scene);
+}
+template <class Kind = BendingRod>
+Kind spec_of(const Json& job) {
+  return spec_of<Kind>(plan_of(job));
+}
+
+Scene scene_of(const Plan& plan, std::int64_t task = 0) { return build_scene(plan.spec(task).scene); }
+
+void check_size(const Plan& plan, int segments, int joints) {
+  CHECK(plan.task(0).segments == segments);
+  CHECK(plan.task(0).joints == joints);
+}
+
+TEST_CASE("a helix's keys become a helix") {
+  const auto helix = spec_of<Helix>(with("/scene", helix_scene().dump()));
+  CHECK(helix.helix_radius_m == 0.5);
+  CHECK(helix.helix_height_m == 0.4);
+  CHECK(helix.windings == 2);
+  CHECK(helix.segments == 45);
+  CHECK_FALSE(helix.stretch_compliance_per_j);
 }
 
 TEST_CASE("a ring's keys become a ring") {
   const Plan plan = plan_of(with("/scene/twist_deg", R"({"grid": [0, 720]})", ring_job()));
-  const Ring plain = std::get<Ring>(plan.spec(0).scene), twisted = std::get<Ring>(plan.spec(1).scene);
-  CHECK(plain.segments == 12);
-  CHECK(plain.length_m == 3);
-  CHECK(plain.twist_deg == 0);
-  CHECK(twisted.twist_deg == 720);
-  CHECK(plain.rest_shape == Ring::RestShape::straight);
-  CHECK(std::get<Ring>(plan_of(with("/scene/rest_shape", "\"circle\"", ring_job())).spec(0).scene).rest_shape ==
-        Ring::RestShape::circle);
-  CHECK(plan.task(0).segments == 12);
-  CHECK(plan.task(0).joints == 12);
+  check_size(plan, 12, 12);
+  CHECK(spec_of<Ring>(plan).length_m == 3);
+  CHECK(spec_of<Ring>(plan, 1).twist_deg == 720);
+  CHECK(spec_of<Ring>(plan).rest_shape == Ring::RestShape::straight);
+  CHECK(spec_of<Ring>(with("/scene/rest_shape", "\"circle\"", ring_job())).rest_shape == Ring::RestShape::circle);
 }
 
 TEST_CASE("a net's keys become a net, whose joints the plan counts") {
   const Plan plan = plan_of(net_job());
-  const Net net = std::get<Net>(plan.spec(0).scene);
-  CHECK(net.rows == 3);
-  CHECK(net.columns == 4);
-  CHECK(net.segments == 2);
-  CHECK(net.mesh_m == 0.5);
-  CHECK(net.held == Held::corners);
-  CHECK(plan.task(0).segments == 45);
-  CHECK(plan.task(0).joints == 50);
-  CHECK(std::get<Net>(plan_of(with("/scene/held", "\"side\"", net_job())).spec(0).scene).held == Held::side);
+  check_size(plan, 45, 50);
+  CHECK(spec_of<Net>(plan).mesh_m == 0.5);
+  CHECK(spec_of<Net>(plan).held == Held::corners);
+  CHECK(spec_of<Net>(with("/scene/held", "\"side\"", net_job())).held == Held::side);
 }
 
 TEST_CASE("a lattice's keys become a lattice, whose joints the plan counts") {
   const Plan plan = plan_of(lattice_job());
-  const Lattice plain = std::get<Lattice>(plan.spec(0).scene);
-  CHECK(plain.cell == Lattice::Cell::cubic);
-  CHECK(plain.nodes_x == 3);
-  CHECK(plain.segments == 2);
-  CHECK(plain.mesh_m == 0.5);
-  CHECK(plan.task(0).segments == 27 * 5);
-  CHECK(plan.task(0).joints == 27 * 4 + 27 * 2 - 8 * 2);  // no joint connects segments held at the corners
+  check_size(plan, 27 * 5, 27 * 4 + 27 * 2 - 8 * 2);  // no joint connects segments held at the corners
+  CHECK(spec_of<Lattice>(plan).cell == Lattice::Cell::cubic);
+  CHECK(spec_of<Lattice>(plan).mesh_m == 0.5);
 
   Json job = with("/scene/cell", R"({"grid": ["body_centred", "octet"]})", lattice_job());
   job["scene"].update({{"nodes_y", 2},
@@ -81,8 +94,8 @@ TEST_CASE("a lattice's keys become a lattice, whose joints the plan counts") {
                        {"initial_angle_deg", 20},
                        {"tip_force_n", {0, -2, 1}}});
   const Plan other = plan_of(job);
-  CHECK(std::get<Lattice>(other.spec(0).scene).cell == Lattice::Cell::body_centred);
-  const Lattice octet = std::get<Lattice>(other.spec(1).scene);
+  CHECK(spec_of<Lattice>(other).cell == Lattice::Cell::body_centred);
+  const auto octet = spec_of<Lattice>(other, 1);
   CHECK(octet.cell == Lattice::Cell::octet);
   CHECK(octet.nodes_y == 2);
   CHECK(octet.nodes_z == 4);
@@ -90,31 +103,76 @@ TEST_CASE("a lattice's keys become a lattice, whose joints the plan counts") {
   CHECK(octet.node_stiffness == 7);
   CHECK(octet.initial_angle_deg == 20);
   CHECK(octet.tip_force_n == Vector3(0, -2, 1));
-  CHECK(other.task(1).joints == joint_count(octet));
 }
 
-TEST_CASE("a lattice stretches physically unless the job says otherwise, a net the other way round") {
-  CHECK(std::get<Lattice>(plan_of(lattice_job()).spec(0).scene).stretch == Stretch::physical);
-  CHECK(std::get<Lattice>(plan_of(with("/scene/stretch", "\"inextensible\"", lattice_job())).spec(0).scene).stretch ==
-        Stretch::inextensible);
-  CHECK(std::get<Net>(plan_of(net_job()).spec(0).scene).stretch == Stretch::inextensible);
+TEST_CASE("a tree's keys become a tree, and a forest has rows of solves and systems for every tree") {
+  check_size(plan_of(tree_job()), 27, 26);
+  CHECK(spec_of<Tree>(tree_job()).shape.length_m == 2);
+  CHECK(spec_of<Tree>(tree_job()).shape.phyllotaxis == TreeShape::Phyllotaxis::golden);
+  const auto random =
+      spec_of<Tree>(tree_job("tree", R"(, "phyllotaxis": "random", "tree_seed": 9, "modulus_exponent": 0.5)"));
+  CHECK(random.shape.phyllotaxis == TreeShape::Phyllotaxis::random);
+  CHECK(random.shape.seed == 9);
+  CHECK(random.modulus_exponent == 0.5);
+
+  const Json forest = tree_job("forest", R"(, "rows": 2, "columns": 3, "spacing_m": 4)");
+  check_size(plan_of(forest), 6 * 27, 6 * 26);
+  CHECK(plan_of(forest).task(0).rows[Rows::solve].count == 10 * 6 * 6);
+  const Task data = plan_of(with("/scene", forest["scene"].dump(), data_job())).task(0);
+  CHECK(data.rows[Rows::system].count == 4 * 6);
+  CHECK(data.rows[Rows::system_segment].count == 4 * 6 * 27);
+  CHECK(data.rows[Rows::system_joint].count == 4 * 6 * 26);
 }
 
-TEST_CASE("rods stretch physically where the job says so") {
+TEST_CASE("a forest has at most as many trees as the rods of a file can be numbered") {
+  Json job = tree_job("forest", R"(, "spacing_m": 4, "rows": 217, "columns": 151)");
+  job["scene"]["depth"] = 0;
+  CHECK(plan_of(job).task(0).segments == 32767 * 3);
+  job["scene"]["rows"] = 182;
+  job["scene"]["columns"] = {{"grid", {180, 182}}};
+  CHECK_THAT(refusal(job), Contains("job.json: scene: rows x columns is 33124") && Contains("must be at most 32767") &&
+                               Contains("several scenes"));
+}
+
+TEST_CASE("the scenes that are made for contact are read from their keys, and count all their rods") {
+  const auto plan = [](const std::string& keys) { return plan_of(job_with_scene(keys + R"(, "radius_m": 0.01)")); };
+  const Plan falling =
+      plan(R"("type": "falling_rods", "rods": 3, "segments": 5, "length_m": 1, "height_m": 0.3, "turn_deg": 70)");
+  check_size(falling, 15, 12);
+  CHECK(falling.task(0).rows[Rows::solve].count % (3 * falling.task(0).steps) == 0);
+  const auto rods = spec_of<FallingRods>(falling);
+  CHECK(rods.height_m == 0.3);
+  CHECK(rods.contact.has_value());
+  CHECK(rods.turn_deg == 70);
+  CHECK(rods.radius_m == 0.01);
+  const Plan coiling = plan(R"("type": "coiling_rod", "segments": 9, "length_m": 1, "height_m": 0.3, "feed_m_s": 2)");
+  CHECK(spec_of<CoilingRod>(coiling).feed_m_s == 2);
+  const Plan knot = plan(R"("type": "knot", "segments": 40, "length_m": 1, "pull_m_s": 0.3)");
+  CHECK(spec_of<Knot>(knot).pull_m_s == 0.3);
+  const Plan rings = plan(R"("type": "ring_chain", "rings": 4, "segments": 10, "length_m": 1)");
+  check_size(rings, 40, 40);
+  const Plan bundle = plan(R"("type": "bundle", "rods": 7, "segments": 4, "length_m": 1, "initial_angle_deg": 30)");
+  CHECK(spec_of<Bundle>(bundle).initial_angle_deg == 30);
+  CHECK(bundle.task(0).segments == 28);
+}
+
+TEST_CASE("rods stretch physically where the job says so; a lattice does unless it says otherwise") {
   const Plan plan = plan_of(with("/scene/stretch", R"({"grid": ["inextensible", "physical"]})"));
-  CHECK(std::get<BendingRod>(plan.spec(0).scene).stretch == Stretch::inextensible);
-  CHECK(std::get<BendingRod>(plan.spec(1).scene).stretch == Stretch::physical);
+  CHECK(spec_of(plan, 0).stretch == Stretch::inextensible);
+  CHECK(spec_of(plan, 1).stretch == Stretch::physical);
+  CHECK(spec_of<Net>(net_job()).stretch == Stretch::inextensible);
+  CHECK(spec_of<Lattice>(lattice_job()).stretch == Stretch::physical);
+  CHECK(spec_of<Lattice>(with("/scene/stretch", "\"inextensible\"", lattice_job())).stretch == Stretch::inextensible);
 }
 
 TEST_CASE("sections are read with their shape, and swept") {
-  CHECK_FALSE(std::get<BendingRod>(plan_of(small_job()).spec(0).scene).section);
   const Plan plan = plan_of(with("/scene/section", R"({"grid": ["circle", {"type": "tube", "wall_m": 0.01},
     {"type": "rectangle", "width_m": 0.1, "height_m": {"grid": [0.01, 0.02]}},
     {"type": "numbers", "area_m2": 1, "second_moment_height_m4": 2, "second_moment_width_m4": 3,
      "torsion_constant_m4": 4}]})"));
   REQUIRE(plan.size() == 5);
-  const auto section = [&](int task) { return *std::get<BendingRod>(plan.spec(task).scene).section; };
-  CHECK_FALSE(std::get<BendingRod>(plan.spec(0).scene).section);
+  const auto section = [&](int task) { return *spec_of(plan, task).section; };
+  CHECK_FALSE(spec_of(plan).section);
   CHECK(std::get<Tube>(section(1)).wall_m == 0.01);
   CHECK(std::get<Rectangle>(section(2)).width_m == 0.1);
   CHECK(std::get<Rectangle>(section(3)).height_m == 0.02);
@@ -122,71 +180,128 @@ TEST_CASE("sections are read with their shape, and swept") {
   CHECK(given.second_moment_height_m4 == 2);
   CHECK(given.second_moment_width_m4 == 3);
   CHECK(given.torsion_constant_m4 == 4);
-  CHECK(std::get<Ring>(plan_of(with("/scene/section", R"({"type": "tube", "wall_m": 0.01})", ring_job())).spec(0).scene)
-            .section);
+  CHECK(spec_of<Ring>(with("/scene/section", R"({"type": "tube", "wall_m": 0.01})", ring_job())).section);
 }
 
 TEST_CASE("tips are loaded, or moved") {
-  const Json moving = with("/scene/tip_motion", R"({"duration_s": 2, "displacement_m": [-0.3, 0, 0]})");
-  const auto moved = std::get<BendingRod>(plan_of(moving).spec(0).scene);
+  const auto moved = spec_of(with("/scene/tip_motion", R"({"duration_s": 2, "displacement_m": [-0.3, 0, 0]})"));
   REQUIRE(moved.tip_motion);
   CHECK(moved.tip_motion->displacement_m == Vector3(-0.3, 0, 0));
   CHECK(moved.tip_motion->rotation_deg == Vector3(0, 0, 0));
   CHECK(moved.tip_motion->duration_s == 2);
-  const auto loaded = std::get<BendingRod>(plan_of(with("/scene/tip_torque_nm", "[1, 2, 3]")).spec(0).scene);
+  const auto loaded = spec_of(with("/scene/tip_torque_nm", "[1, 2, 3]"));
   CHECK(loaded.tip_torque_nm == Vector3(1, 2, 3));
   CHECK_FALSE(loaded.tip_motion);
 }
 
-TEST_CASE("guesses that need rods without loops are refused before anything runs") {
-  const Json knn = {{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}};  // the file is not read yet
-  Json ring = ring_job(), rod = small_job();
-  ring["guesses"].push_back(knn);
-  rod["guesses"].push_back(knn);
-  CHECK(refusal_of_loops(rod).empty());
+TEST_CASE("wind and contact are parts of any scene, also as one value of a grid with none") {
+  const Plan windy = plan_of(
+      with("/scene/wind", R"({"grid": ["none", {"mean_m_s": [{"grid": [3, 5]}, 0, 1], "gust_strength": 0.3}]})"));
+  REQUIRE(windy.size() == 3);
+  CHECK_FALSE(scene_of(windy).wind);
+  CHECK(scene_of(windy, 1).wind);
+  const auto wind = *spec_of(windy, 2).wind;
+  CHECK(wind.mean_m_s == Vector3(5, 0, 1));
+  CHECK(wind.gust_strength == 0.3);
 
-  CHECK(refusal_of_loops(guess_of_model(net_job())).empty());
-  Json several = guess_of_model(small_job());
-  several["guesses"].back()["copingnet"]["corrections"] = 2;
-  CHECK_THAT(refusal_of_loops(ring), Catch::Contains("guesses[2]: \"knn\" ") && Catch::Contains("rods with loops") &&
-                                         Catch::Contains("12 segments of task 0"));
-  CHECK_THAT(refusal_of_loops(several), Catch::Contains("guesses[2]: corrections above 1 ") &&
-                                            Catch::Contains("bending-paper.h5, a network without factors"));
-}
-
-TEST_CASE("contact is a key of every scene, and none where it is not asked for") {
-  CHECK_FALSE(std::get<Net>(plan_of(net_job()).spec(0).scene).contact);
   const Plan plan = plan_of(with("/scene/contact", R"({"grid": ["none", {"friction": 0.6, "sweeps": 9}]})", net_job()));
-  REQUIRE(plan.size() == 2);
-  CHECK_FALSE(std::get<Net>(plan.spec(0).scene).contact);
-  const auto contact = std::get<Net>(plan.spec(1).scene).contact;
-  REQUIRE(contact);
-  CHECK(contact->friction == 0.6);
-  CHECK(contact->sweeps == 9);
-  CHECK(contact->tolerance == ContactSettings{}.tolerance);
+  CHECK_FALSE(spec_of<Net>(plan).contact);
+  const auto contact = *spec_of<Net>(plan, 1).contact;
+  CHECK(contact.friction == 0.6);
+  CHECK(contact.sweeps == 9);
 }
 
-TEST_CASE("the scenes that are made for contact are read from their keys, and count all their rods") {
-  const auto plan = [](const std::string& keys) { return plan_of(job_with_scene(keys + R"(, "radius_m": 0.01)")); };
-  const Plan falling =
-      plan(R"("type": "falling_rods", "rods": 3, "segments": 5, "length_m": 1, "height_m": 0.3, "turn_deg": 70)");
-  const FallingRods rods = std::get<FallingRods>(falling.spec(0).scene);
-  CHECK(rods.height_m == 0.3);
-  CHECK(rods.contact.has_value());
-  CHECK(rods.turn_deg == 70);
-  CHECK(rods.radius_m == 0.01);
-  CHECK(falling.task(0).segments == 15);
-  CHECK(falling.task(0).joints == 12);
-  CHECK(falling.task(0).rows[Rows::solve].count % (3 * falling.task(0).steps) == 0);
-  const Plan coiling = plan(R"("type": "coiling_rod", "segments": 9, "length_m": 1, "height_m": 0.3, "feed_m_s": 2)");
-  CHECK(std::get<CoilingRod>(coiling.spec(0).scene).feed_m_s == 2);
-  const Plan knot = plan(R"("type": "knot", "segments": 40, "length_m": 1, "pull_m_s": 0.3)");
-  CHECK(std::get<Knot>(knot.spec(0).scene).pull_m_s == 0.3);
-  const Plan rings = plan(R"("type": "ring_chain", "rings": 4, "segments": 10, "length_m": 1)");
-  CHECK(rings.task(0).joints == 40);
-  const Plan bundle = plan(R"("type": "bundle", "rods": 7, "segments": 4, "length_m": 1, "initial_angle_deg": 30)");
-  CHECK(std::get<Bundle>(bundle.spec(0).scene).initial_angle_deg == 30);
-  CHECK(bundle.task(0).segments == 28);
+TEST_CASE("loads, motions and changes of gravity are read, and their values may be sweeps") {
+  const Plan plan = plan_of(with("/scene/loads", R"([
+      {"at_m": [1, 0, 0], "force_n": [0, {"grid": [-1, -2]}, 0], "times_s": [0, 1], "factors": [0, 3], "smooth": true},
+      {"at_m": [0.5, 0, 0], "torque_nm": [1, 0, 0]}])"));
+  REQUIRE(plan.size() == 2);
+  const Prescribed read = spec_of(plan, 1).prescribed;
+  REQUIRE(read.loads.size() == 2);
+  CHECK(read.loads[0].force_n == Vector3(0, -2, 0));
+  CHECK(read.loads[0].schedule.at(2) == 3);
+  CHECK(read.loads[0].schedule.smooth);
+  CHECK(read.loads[1].torque_nm == Vector3(1, 0, 0));
+  CHECK(read.loads[1].schedule.at(2) == 1);
+  const Prescribed other =
+      spec_of(with("/scene/motions", R"([{"at_m": [0, 0, 0], "rotation_deg": [90, 0, 0], "times_s": [0, 1],
+      "factors": [0, 1]}])",
+                   with("/scene/gravity_changes", R"([{"by_m_s2": [0, 9.81, 0]}])")))
+          .prescribed;
+  CHECK(other.motions.at(0).rotation_deg == Vector3(90, 0, 0));
+  CHECK(other.gravity.at(0).by_m_s2 == Vector3(0, 9.81, 0));
+}
+
+TEST_CASE("obstacles of every kind stand in the scene, beside its own floor") {
+  CHECK(scene_of(plan_of(small_job())).obstacles.empty());
+  const Scene rod = scene_of(plan_of(job_with_obstacles(
+      R"([{"half_space": {"point_m": [0, -3, 0], "normal": [1, 2, 0], "velocity_m_s": [0, 1, 0]}},
+          {"ball": {"centre_m": [0, -1, 0], "radius_m": 0.2, "velocity_m_s": [0, 0, -2]}},
+          {"capsule": {"from_m": [0, 0, 1], "to_m": [1, 0, 1], "radius_m": 0.1, "velocity_m_s": [3, 0, 0]}}])")));
+  REQUIRE(rod.obstacles.size() == 3);
+  const auto floor = std::get<HalfSpace>(rod.obstacles[0]);
+  CHECK(floor.point_m == Vector3(0, -3, 0));
+  CHECK(floor.normal == Vector3(1, 2, 0));
+  CHECK(floor.velocity_m_s == Vector3(0, 1, 0));
+  const auto ball = std::get<Ball>(rod.obstacles[1]);
+  CHECK(ball.centre_m == Vector3(0, -1, 0));
+  CHECK(ball.radius_m == 0.2);
+  CHECK(ball.velocity_m_s == Vector3(0, 0, -2));
+  const auto capsule = std::get<Capsule>(rod.obstacles[2]);
+  CHECK(capsule.from_m == Vector3(0, 0, 1));
+  CHECK(capsule.to_m == Vector3(1, 0, 1));
+  CHECK(capsule.radius_m == 0.1);
+  CHECK(capsule.velocity_m_s == Vector3(3, 0, 0));
+
+  Json falling = with("/scene/type", "\"falling_rods\"", job_with_obstacles(R"([{"half_space": {}}])"));
+  falling["scene"].update({{"rods", 2}, {"height_m", 0.3}});
+  const Scene heap = scene_of(plan_of(falling));
+  REQUIRE(heap.obstacles.size() == 2);
+  CHECK(std::get<HalfSpace>(heap.obstacles[0]).normal == Vector3(0, 1, 0));
+  for (const Obstacle& still : heap.obstacles) CHECK(std::get<HalfSpace>(still).velocity_m_s.isZero(0));
+}
+
+TEST_CASE("values of obstacles, whole ones and whole lists of them are swept") {
+  const auto names = [](const Plan& plan, const char* path) { return values_of<std::string>(plan, path); };
+  Json drawn = job_with_obstacles(
+      R"([{"ball": {"centre_m": [0, {"uniform": [-2, -1]}, 0], "radius_m": {"grid": [0.1, 0.2]}}}])");
+  drawn["samples"] = 3;
+  const Plan balls = plan_of(drawn);
+  REQUIRE(balls.size() == 6);
+  const Ball ball = std::get<Ball>(scene_of(balls, 4).obstacles.at(0));
+  CHECK(ball.radius_m == 0.2);
+  CHECK(ball.centre_m.y() < -1);
+  CHECK(ball.centre_m.y() == std::get<Ball>(scene_of(balls, 1).obstacles.at(0)).centre_m.y());
+  CHECK_FALSE(find_column(balls, "scene.obstacles"));
+
+  const std::string bar = R"({"capsule": {"from_m": [1, -1, -1], "to_m": [1, -1, 1], "radius_m": 0.1}})";
+  const Plan lists =
+      plan_of(job_with_obstacles(R"({"grid": [[], [{"half_space": {}}], [{"half_space": {}}, )" + bar + "]]}"));
+  CHECK(scene_of(lists, 0).obstacles.empty());
+  CHECK(scene_of(lists, 2).obstacles.size() == 2);
+  CHECK(names(lists, "scene.obstacles") == std::vector<std::string>{"none", "half_space", "half_space, capsule"});
+
+  const Plan kinds = plan_of(job_with_obstacles(R"([{"grid": [{"half_space": {}}, )" + bar + "]}]"));
+  CHECK(std::holds_alternative<HalfSpace>(scene_of(kinds, 0).obstacles.at(0)));
+  CHECK(std::holds_alternative<Capsule>(scene_of(kinds, 1).obstacles.at(0)));
+  CHECK(names(kinds, "scene.obstacles[0]") == std::vector<std::string>{"half_space", "capsule"});
+}
+
+TEST_CASE("guesses that need single chains are refused for other scenes before anything runs") {
+  const auto refused = [](Json job, const char* guess) {
+    job["guesses"].push_back(Json::parse(guess));
+    return message_of<JobError>([&] { check_guesses(plan_of(job)); });
+  };
+  const char* knn = R"({"knn": {"data": ")" PRETRAINED R"(/rods.h5"}})";  // the file is not read yet
+  CHECK(refused(small_job(), knn).empty());
+  CHECK_THAT(refused(ring_job(), knn),
+             Contains("guesses[2]: \"knn\" ") && Contains("rods with loops") && Contains("12 segments of task 0"));
+  CHECK_THAT(refused(tree_job(), knn), Contains("rods with branches") && Contains("27 segments of task 0"));
+  CHECK(refused(with("/scene/depth", "0", tree_job()), knn).empty());
+  CHECK(refused(net_job(), R"({"copingnet": {"model": ")" PRETRAINED R"(/bending-paper.h5"}})").empty());
+  CHECK_THAT(
+      refused(small_job(), R"({"copingnet": {"model": ")" PRETRAINED R"(/bending-paper.h5", "corrections": 2}})"),
+      Contains("guesses[2]: corrections above 1 ") && Contains("bending-paper.h5, a network without factors"));
 }
 
 TEST_CASE("a scene whose factor needs too much memory is refused before it runs, with what does without") {
@@ -195,17 +310,16 @@ TEST_CASE("a scene whose factor needs too much memory is refused before it runs,
     return message_of<JobError>([&] { check_factors(plan_of(job), little); });
   };
   Json job = job_with_scene(R"("type": "lattice", "nodes_x": 4, "segments": 2, "mesh_m": 0.2, "radius_m": 0.01)");
-  CHECK_THAT(refusal_of_factors(job),
-             Catch::Contains("solve: task 0: a direct solve of 400 joints needs 0.00") &&
-                 Catch::Contains("0.000931 GiB; must be a smaller scene, or method \"cg\" with "
-                                 "\"reference\": \"cg\" (no factorisation)"));
+  CHECK_THAT(refusal_of_factors(job), Contains("solve: task 0: a direct solve of 400 joints needs 0.00") &&
+                                          Contains("0.000931 GiB; must be a smaller scene, or method \"cg\" with "
+                                                   "\"reference\": \"cg\" (no factorisation)"));
   job["solve"]["reference"] = "cg";
   CHECK(refusal_of_factors(job) == "");
   job["guesses"] = Json::parse(R"(["zero", {"guarded": {"guess": {"oracle": {"error": 0.1}}, "threshold": 1}}])");
-  CHECK_THAT(refusal_of_factors(job), Catch::Contains("guesses: task 0: ") && Catch::Contains("no \"oracle\""));
+  CHECK_THAT(refusal_of_factors(job), Contains("guesses: task 0: ") && Contains("no \"oracle\""));
   job["guesses"] = {"zero"};
   job["scene"]["contact"] = Json::object();
-  CHECK_THAT(refusal_of_factors(job), Catch::Contains("scene.contact: task 0: ") && Catch::Contains("without contact"));
+  CHECK_THAT(refusal_of_factors(job), Contains("scene.contact: task 0: ") && Contains("without contact"));
   CHECK_NOTHROW(check_factors(plan_of(job)));
   // The memory of chains and trees grows linearly, so they are not checked.
   CHECK(refusal_of_factors(with("/scene/segments", "100000")) == "");

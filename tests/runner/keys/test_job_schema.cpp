@@ -1,4 +1,4 @@
-// The JSON Schema follows the table of keys. tests/command/test_schema.py checks the committed schema against the
+// Every key is described, and the JSON Schema follows the table of keys. tests/command/test_schema.py checks the committed schema against the
 // reader with a real validator.
 #include <catch2/catch.hpp>
 
@@ -43,6 +43,30 @@ TEST_CASE("every guess has a definition, a name alone where nothing is required"
   const Json& names = guess[0]["enum"];
   CHECK(std::find(names.begin(), names.end(), "oracle") != names.end());
   CHECK(std::find(names.begin(), names.end(), "guarded") == names.end());
+}
+
+/// Calls check(key) for a key and all keys within it.
+template <class Check>
+void for_every_key(const Key& key, const Check& check) {
+  check(key);
+  for (const Key& child : key.keys) for_every_key(child, check);
+}
+
+TEST_CASE("every key is described") {
+  const auto check = [](const Key& key) {
+    INFO(key.name);
+    CHECK_FALSE(key.name.empty());
+    CHECK_FALSE(key.help.empty());
+    CHECK_FALSE(allowed(key).empty());
+    if (key.kind == Key::Kind::choice) CHECK_FALSE(key.choices.empty());
+    const bool has_unit_suffix = (key.name.size() > 2 && key.name.find("_m") == key.name.size() - 2) ||
+                                 key.name.find("_pa") != std::string::npos;
+    if (has_unit_suffix) CHECK_FALSE(key.unit.empty());
+    if (!key.tag.empty()) CHECK(find_key(key.keys, key.tag) != nullptr);
+  };
+  for_every_key(job_key(), check);
+  for (const Key& guess : guess_keys()) for_every_key(guess, check);
+  check(guess_label_key());
 }
 
 TEST_CASE("the text is the schema, whole") { CHECK(Json::parse(job_schema_text()) == job_schema()); }

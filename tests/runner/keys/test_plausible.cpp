@@ -1,6 +1,5 @@
-// Values that seem to be in another unit cause a warning; the shipped jobs have none.
+// Values that seem to be in another unit cause a warning. For the shipped jobs see job/test_shipped_jobs.cpp.
 #include <catch2/catch.hpp>
-#include <filesystem>
 
 #include "tests/runner/job_examples.hpp"
 
@@ -89,15 +88,6 @@ TEST_CASE("a load that jumps within a step of BDF2 is warned of by its time") {
   check_warning(times, {"scene.loads[0].times_s[2]: "});
   CHECK(job_of(loaded("[0, 1, 1.1]", "\"bdf2\"")).warnings.empty());
   CHECK(job_of(loaded("[0, 1, 1.001]", "\"euler\"")).warnings.empty());
-}
-
-TEST_CASE("no job of the project has a value that is not plausible") {
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(RODSWEEP_JOBS)) {
-    if (entry.path().extension() != ".json" || entry.path().filename() == "schema.json") continue;
-    CAPTURE(entry.path());
-    for (const std::string& warning : read_job(entry.path(), MissingFiles::accepted).warnings)
-      CHECK_THAT(warning, Catch::Contains("twisted or spun"));  // on purpose, in studies of the paper's step
-  }
 }
 
 }  // namespace test_plausible

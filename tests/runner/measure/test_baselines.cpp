@@ -70,14 +70,6 @@ TEST_CASE("nearest neighbours know the simulations of their own data set, the fi
   CHECK(shared_knn_set(folder / "data.h5", 1)->size(0) == data["time"]["steps"]);
 }
 
-TEST_CASE("a file that is no data set makes the task an error that says so") {
-  const TemporaryFolder folder;
-  std::ofstream(folder / "data.h5") << "not HDF5";
-  const auto records = evaluated(folder, with("/guesses", R"(["zero", {"knn": {"data": "data.h5"}}])"));
-  CHECK(records.front().outcome == TaskOutcome::error);
-  CHECK_THAT(records.front().message, Catch::Contains("data.h5"));
-}
-
 TEST_CASE("a network that says nothing lets the rod fall apart, which is data: rows without iterations") {
   const TemporaryFolder folder;
   write_model(folder / "silent.h5", 0);
@@ -132,20 +124,6 @@ TEST_CASE("models are refused where they are for something else") {
              Catch::Contains("solve.model: systems.h5 is not allowed: its encoding is not \"state\""));
   CHECK_THAT(refusal_of(with("/guesses", R"(["zero", {"copingnet": {"model": "states.h5"}}])")),
              Catch::Contains("guesses[1]: states.h5 is not allowed"));
-}
-
-TEST_CASE("a network moves every tree of a forest instead of the solve") {
-  const TemporaryFolder folder;
-  write_model(folder / "quiet.h5", 0.01F);
-  Json job = instead_of_the_solve("quiet.h5");
-  job["scene"] = forest_scene();
-  const TaskRecord record = evaluated(folder, job).front();
-  CHECK(record.outcome == TaskOutcome::ok);
-  CHECK(record.steps.joint_gap.back() > record.steps.joint_gap.front());
-  for (std::size_t rod = 0; rod < 2; ++rod) {
-    CHECK(record.solves.rod[rod] == static_cast<int>(rod));
-    CHECK(record.solves.newton_residual[rod] > 0);
-  }
 }
 
 TEST_CASE("a network whose answer is no number ends its task, and only that") {

@@ -1,5 +1,6 @@
 // An error in a task becomes an outcome in the file; an error while writing, or of the request to stop, does not.
 #include <catch2/catch.hpp>
+#include <exception>
 #include <vector>
 
 #include "runner/measure/task_runner.hpp"
@@ -10,62 +11,54 @@ namespace test_task_runner {
 
 bool never() { return false; }
 
-TaskRunner::Write into(std::vector<TaskRecord>& written) {
-  return [&written](const Task&, const TaskRecord& record, const TaskOrigin* origin) {
-    CHECK(origin == nullptr);
+/// A runner of a task of five steps, and what it writes.
+struct Run {
+  explicit Run(const TaskHooks& hooks = {})
+      : plan(plan_of(five_steps(R"(["zero"])"))),
+        run(
+            plan, [this](const Task&, const TaskRecord& record, const TaskOrigin*) { write(record); }, hooks) {}
+
+  void write(const TaskRecord& record) {
+    if (failure) std::rethrow_exception(failure);
     written.push_back(record);
-  };
-}
+  }
+
+  Plan plan;
+  std::vector<TaskRecord> written;
+  std::exception_ptr failure;  ///< of the next write
+  TaskRunner run;
+};
 
 TEST_CASE("a record that was filled is written and its outcome returned") {
-  const Plan plan = plan_of(five_steps(R"(["zero"])"));
-  std::vector<TaskRecord> written;
-  TaskRunner run(plan, into(written));
-  CHECK(run(0, never).outcome == TaskOutcome::ok);
-  REQUIRE(written.size() == 1);
-  CHECK(written[0].outcome == TaskOutcome::ok);
-  CHECK(written[0].tasks.steps_done[0] == 5);
+  Run made;
+  CHECK(made.run(0, never).outcome == TaskOutcome::ok);
+  REQUIRE(made.written.size() == 1);
+  CHECK(made.written[0].outcome == TaskOutcome::ok);
+  CHECK(made.written[0].tasks.steps_done[0] == 5);
 }
 
 TEST_CASE("a task that throws is an error with its message, written with the steps up to it") {
-  const Plan plan = plan_of(five_steps(R"(["zero"])"));
-  std::vector<TaskRecord> written;
   TaskHooks hooks;
   hooks.observe = [](const Rod&, const LinearSystem&, const SolvePosition& at, const VectorX&) {
     if (at.step == 3) throw std::runtime_error("the matrix has no diagonal");
   };
-  TaskRunner run(plan, into(written), hooks);
-  const TaskResult result = run(0, never);
+  Run made(hooks);
+  const TaskResult result = made.run(0, never);
   CHECK(result.outcome == TaskOutcome::error);
   CHECK(result.message == "the matrix has no diagonal");
-  REQUIRE(written.size() == 1);
-  CHECK(written[0].outcome == TaskOutcome::error);
-  CHECK(written[0].message == "the matrix has no diagonal");
-  CHECK(written[0].tasks.steps_done[0] == 3);
+  REQUIRE(made.written.size() == 1);
+  CHECK(made.written[0].outcome == TaskOutcome::error);
+  CHECK(made.written[0].message == "the matrix has no diagonal");
+  CHECK(made.written[0].tasks.steps_done[0] == 3);
 }
 
-TEST_CASE("an abandoned task is not written") {
-  const Plan plan = plan_of(five_steps(R"(["zero"])"));
-  std::vector<TaskRecord> written;
-  TaskRunner run(plan, into(written));
-  CHECK(run(0, [] { return true; }).outcome == TaskOutcome::pending);
-  CHECK(written.empty());
-}
-
-TEST_CASE("a failing write is no outcome of the task") {
-  const Plan plan = plan_of(five_steps(R"(["zero"])"));
-  TaskRunner run(plan, [](const Task&, const TaskRecord&, const TaskOrigin*) {
-    throw std::runtime_error("no space left on device");
-  });
-  CHECK_THROWS_WITH(run(0, never), "no space left on device");
-}
-
-TEST_CASE("a failing request to stop is no outcome of the task, which is not written") {
-  const Plan plan = plan_of(five_steps(R"(["zero"])"));
-  std::vector<TaskRecord> written;
-  TaskRunner run(plan, into(written));
-  CHECK_THROWS_WITH(run(0, []() -> bool { throw std::runtime_error("MPI_Iprobe failed"); }), "MPI_Iprobe failed");
-  CHECK(written.empty());
+TEST_CASE("an abandoned task is not written; an error of a write or of the request to stop is not the task's outcome") {
+  Run made;
+  CHECK(made.run(0, [] { return true; }).outcome == TaskOutcome::pending);
+  CHECK_THROWS_WITH(made.run(0, []() -> bool { throw std::runtime_error("MPI_Iprobe failed"); }), "MPI_Iprobe failed");
+  made.failure = std::make_exception_ptr(std::runtime_error("no space left on device"));
+  CHECK_THROWS_WITH(made.run(0, never), "no space left on device");
+  CHECK(made.written.empty());
 }
 
 TEST_CASE("outcomes of tasks keep the numbers and names that files hold") {

@@ -9,28 +9,13 @@ using namespace rodsweep;
 
 namespace test_plan {
 
-ParameterColumn column(const Plan& plan, const std::string& path) {
-  for (const ParameterColumn& c : plan.parameters()) {
-    if (c.path == path) return c;
-  }
-  FAIL("no column " + path);
-  return {};
-}
+ParameterColumn column(const Plan& plan, const std::string& path) { return find_column(plan, path).value(); }
 
-bool has_column(const Plan& plan, const std::string& path) {
-  const auto columns = plan.parameters();
-  return std::any_of(columns.begin(), columns.end(), [&](const auto& c) { return c.path == path; });
-}
+bool has_column(const Plan& plan, const std::string& path) { return find_column(plan, path).has_value(); }
 
-std::vector<double> numbers(const Plan& plan, const std::string& path) {
-  return std::get<ColumnValues<double>>(column(plan, path).values).all();
-}
-std::vector<std::int64_t> integers(const Plan& plan, const std::string& path) {
-  return std::get<ColumnValues<std::int64_t>>(column(plan, path).values).all();
-}
-std::vector<std::string> texts(const Plan& plan, const std::string& path) {
-  return std::get<ColumnValues<std::string>>(column(plan, path).values).all();
-}
+constexpr auto numbers = values_of<double>;
+constexpr auto integers = values_of<std::int64_t>;
+constexpr auto texts = values_of<std::string>;
 
 TEST_CASE("grid axes are crossed in the order of the job, the last varying fastest") {
   const Plan plan =
@@ -52,20 +37,6 @@ TEST_CASE("zips run in step on one axis, which stands where the first of them do
   CHECK(integers(plan, "scene.segments") == std::vector<std::int64_t>{4, 4, 5, 5});
   CHECK(integers(plan, "time.steps") == std::vector<std::int64_t>{40, 40, 50, 50});
   CHECK(numbers(plan, "scene.radius_m") == std::vector<double>{0.1, 0.2, 0.1, 0.2});
-}
-
-TEST_CASE("samples lie within a grid point, and grid points share draws") {
-  Json job = with("/scene/length_m", R"({"uniform": [1, 5]})", with("/scene/segments", R"({"grid": [4, 5]})"));
-  job["scene"]["radius_m"] = uniform(1, 5);
-  job["samples"] = 3;
-  const Plan plan = plan_of(job);
-  CHECK(integers(plan, "scene.segments") == std::vector<std::int64_t>{4, 4, 4, 5, 5, 5});
-  const auto lengths = numbers(plan, "scene.length_m");
-  for (std::size_t i = 0; i < 3; ++i) CHECK(lengths[i] == lengths[i + 3]);
-  CHECK(lengths != numbers(plan, "scene.radius_m"));
-  CHECK(std::set<double>(lengths.begin(), lengths.end()).size() == 3);
-  CHECK(plan.task(4).sample == 1);
-  CHECK(plan.task(4).point == 4);
 }
 
 TEST_CASE("draws fill their range evenly and never leave it") {
@@ -136,9 +107,6 @@ TEST_CASE("components of a vector can be swept, and whole vectors too") {
   CHECK(forces.swept);
   CHECK(std::get<ColumnValues<double>>(forces.values).all() == std::vector<double>{0, 1, 3, 0, 2, 3});
 
-  const Plan whole = plan_of(with("/scene/gravity_m_s2", R"({"grid": [[0, -9.81, 0], [0, -1.62, 0]]})"));
-  CHECK(std::get<BendingRod>(whole.spec(1).scene).gravity_m_s2 == Vector3(0, -1.62, 0));
-
   Json random = with("/scene/tip_force_n", R"([{"uniform": [0, 1]}, {"uniform": [0, 1]}, 0])");
   const Vector3 force = std::get<BendingRod>(plan_of(random).spec(0).scene).tip_force_n;
   CHECK(force.x() != force.y());
@@ -178,7 +146,6 @@ TEST_CASE("an object that is swept against a word has a column that says which i
   CHECK(texts(wind, "scene.wind") == std::vector<std::string>{"mean_m_s [8,0,0], turbulence_m_s 2", "none"});
 
   CHECK(contact("{}").inputs(0).trajectory == plan.inputs(1).trajectory);
-  CHECK(contact("{}").inputs(0).trajectory != plan.inputs(0).trajectory);
 }
 
 TEST_CASE("a duration becomes whole steps, in the tasks and in a column") {
@@ -211,39 +178,12 @@ TEST_CASE("a closed loop with cg runs a task for every guess, on the same draws"
   CHECK(plan.spec(0).seed != plan.spec(2).seed);
 }
 
-TEST_CASE("the direct method has no guesses") {
-  const Plan plan = plan_of(with("/solve", R"({"method": "direct"})", without("/guesses")));
-  CHECK(plan.guess_labels().empty());
-  CHECK(plan.spec(0).guesses.empty());
-  CHECK(plan.spec(0).own_guess == -1);
-
-  const Plan both =
-      plan_of(with("/solve", R"({"method": {"grid": ["cg", "direct"]}})", with("/evaluation", "\"closed_loop\"")));
-  CHECK(both.size() == 3);
-  CHECK(both.spec(1).guesses.size() == 2);
-  CHECK(both.spec(2).guesses.empty());
-}
-
-TEST_CASE("parameters of guesses are swept like any other, and guarded guesses too") {
-  const Plan plan = plan_of(with("/guesses", R"(["zero", {"oracle": {"error": {"grid": [0.1, 0.2]}}},
-      {"guarded": {"guess": {"grid": ["linear", {"oracle": {"error": 3}}]}, "threshold": 1}}, {"oracle": {"error": 0.5}}])"));
-  REQUIRE(plan.size() == 4);
-  CHECK(std::get<guess::Oracle>(plan.spec(2).guesses[1].kind).error == 0.2);
-  CHECK(find_guess<guess::Linear>(plan.spec(2).guesses[2]) != nullptr);
-  const TaskSpec last = plan.spec(3);
-  REQUIRE(find_guess<guess::Oracle>(last.guesses[2]) != nullptr);
-  CHECK(find_guess<guess::Oracle>(last.guesses[2])->error == 3);
-  CHECK(numbers(plan, "guesses[1].oracle.error") == std::vector<double>{0.1, 0.1, 0.2, 0.2});
-  CHECK(texts(plan, "guesses[2].guarded.guess") == std::vector<std::string>{"linear", "oracle", "linear", "oracle"});
-  CHECK_FALSE(has_column(plan, "guesses[3].oracle.error"));
-}
-
 TEST_CASE("a whole guess is swept, and columns say which one each task had, with its parameters") {
   const Plan plan = plan_of(with("/guesses", R"(["zero", {"oracle": {"error": 0.7}},
       {"grid": ["previous", {"oracle": {"error": 0.1}},
                 {"guarded": {"guess": "linear", "threshold": {"grid": [1, 2]}}}]}])"));
-  REQUIRE(plan.size() == 4);
   const std::vector<GuessKind> kinds{guess::Previous{}, guess::Oracle{}, guess::Guarded{}, guess::Guarded{}};
+  REQUIRE(plan.size() == 4);
   for (std::int64_t i = 0; i < 4; ++i) {
     const auto guesses = plan.spec(i).guesses;
     REQUIRE(guesses.size() == 3);
@@ -268,40 +208,44 @@ TEST_CASE("a whole guess is swept, and columns say which one each task had, with
   CHECK_FALSE(has_column(plan, "guesses[1].oracle.error"));  // 0.7 in all tasks, so it is in the label
 }
 
-TEST_CASE("rows of the file follow one another without gaps") {
-  Json job = with("/scene/segments", R"({"grid": [4, 6]})", with("/scene/clamp", "\"wall\""));
-  job["time"] = {{"step_s", 0.02}, {"steps", grid({10, 25})}, {"newton_iterations", 3}};
-  job["record"] = {{"trajectory_every", 10}};
-  const Plan plan = plan_of(job);
-  std::int64_t steps = 0, solves = 0, frames = 0, segments = 0;
-  for (const Task& task : plan.tasks()) {
-    CHECK(task.joints == task.segments - 1);
-    CHECK(task.rows[Rows::step].first == steps);
-    CHECK(task.rows[Rows::solve].first == solves);
-    CHECK(task.rows[Rows::frame_segment].first == frames);
-    CHECK(task.rows[Rows::segment].first == segments);
-    CHECK(task.rows[Rows::segment].count == task.segments);
-    CHECK(task.rows[Rows::solve].count == 3 * task.steps);
-    CHECK(task.frames == (task.steps == 10 ? 2 : 3));  // includes the initial state
-    CHECK(task.cost == static_cast<double>(task.segments * task.rows[Rows::solve].count));
-    steps += task.steps;
-    solves += task.rows[Rows::solve].count;
-    frames += task.frames * task.segments;
-    segments += task.segments;
+TEST_CASE("rows of every kind follow one another without gaps") {
+  Json sweep = with("/scene/segments", R"({"grid": [4, 6]})", with("/scene/clamp", "\"wall\""));
+  sweep["time"] = {{"step_s", 0.02}, {"steps", grid({10, 25})}, {"newton_iterations", 3}};
+  sweep["record"] = {{"trajectory_every", 10}};
+  Json data = without("/guesses", sweep);
+  data["kind"] = "dataset";
+  data["record"] = {{"systems", "all"}};
+  for (const Json& job : {sweep, data}) {
+    const bool is_data = job["kind"] == "dataset";
+    const Plan plan = plan_of(job);
+    CHECK(plan.task(0).segments == 5);  // a wall adds its static segment
+    PerRows<std::int64_t> counted{};
+    for (const Task& task : plan.tasks()) {
+      CHECK(task.joints == task.segments - 1);
+      CHECK(task.frames == (is_data ? 0 : task.steps == 10 ? 2 : 3));  // includes the initial state
+      const std::int64_t solves = 3 * task.steps, systems = is_data ? solves : 0;
+      CHECK(task.cost == static_cast<double>(task.segments * solves));
+      const std::pair<Rows, std::int64_t> counts[] = {{Rows::task, 1},
+                                                      {Rows::step, task.steps},
+                                                      {Rows::solve, solves},
+                                                      {Rows::frame_segment, task.frames * task.segments},
+                                                      {Rows::segment, is_data ? 0 : task.segments},
+                                                      {Rows::system, systems},
+                                                      {Rows::system_segment, systems * task.segments},
+                                                      {Rows::system_joint, systems * task.joints}};
+      for (const auto& [kind, count] : counts) {
+        CHECK(task.rows[kind].count == count);
+        CHECK(task.rows[kind].first == counted[kind]);
+        counted[kind] += count;
+      }
+    }
+    for (std::size_t kind = 0; kind < row_kinds; ++kind) CHECK(plan.rows(static_cast<Rows>(kind)) == counted[kind]);
+    CHECK(plan.max_frames() == (is_data ? 0 : 3));
   }
-  CHECK(plan.task(0).segments == 5);  // a wall adds its static segment
-  CHECK(plan.rows(Rows::step) == steps);
-  CHECK(plan.rows(Rows::solve) == solves);
-  CHECK(plan.rows(Rows::frame_segment) == frames);
-  CHECK(plan.rows(Rows::segment) == segments);
-  CHECK(plan.max_frames() == 3);
 
-  job["record"] = {{"solves", "summary"}};
-  const Plan summary = plan_of(job);
-  CHECK(summary.rows(Rows::solve) == 0);
-  CHECK(summary.rows(Rows::frame_segment) == 0);
-  CHECK(summary.rows(Rows::segment) == 0);
-  CHECK(summary.max_frames() == 0);
+  const Plan summary = plan_of(with("/record", R"({"solves": "summary"})", sweep));
+  for (const Rows kind : {Rows::solve, Rows::frame_segment, Rows::segment}) CHECK(summary.rows(kind) == 0);
+  CHECK(plan_of(with("/record", R"({"systems": "first"})", data)).task(0).rows[Rows::system].count == 10);
 }
 
 TEST_CASE("rows are counted with the last task's, and with those of a task that overflow") {
@@ -333,10 +277,6 @@ TEST_CASE("a hundred thousand tasks expand") {
   CHECK(std::get<BendingRod>(plan.spec(99999).scene).length_m == std::get<BendingRod>(plan.spec(24999).scene).length_m);
 }
 
-TEST_CASE("iterations are counted at eight tolerances") {
-  CHECK(tolerance_ladder() == std::vector<double>{1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8});
-}
-
 TEST_CASE("a task alone keeps its point, sample, guess, values and seed, and has its rows to itself") {
   Json job = small_job();
   job["samples"] = 3;
@@ -350,8 +290,8 @@ TEST_CASE("a task alone keeps its point, sample, guess, values and seed, and has
   REQUIRE(one.size() == 1);
   CHECK(one.task_alone() == 11);
   const Task &there = whole.task(11), &here = one.task(0);
-  CHECK((here.index == 0 && here.rows[Rows::step].first == 0 && here.rows[Rows::solve].first == 0 &&
-         here.rows[Rows::frame_segment].first == 0 && here.rows[Rows::segment].first == 0));
+  CHECK(here.index == 0);
+  for (const RowRange& rows : here.rows) CHECK(rows.first == 0);
   CHECK((here.point == there.point && here.sample == there.sample && here.own_guess == there.own_guess));
   CHECK((here.steps == there.steps && here.rows[Rows::solve].count == there.rows[Rows::solve].count &&
          here.segments == there.segments));
@@ -370,12 +310,9 @@ TEST_CASE("a task alone has the columns of the whole plan, also of guesses that 
   Json job = small_job();
   job["guesses"] = Json::parse(R"(["zero", {"oracle": {"error": {"grid": [0.1, 0.2]}}}])");
   const Plan whole = plan_of(job);
-  const auto paths = [](const Plan& plan) {
-    std::vector<std::string> names;
-    for (const ParameterColumn& column : plan.parameters()) names.push_back(column.path);
-    return names;
-  };
-  CHECK(paths(whole.alone(1, 1)) == paths(whole));
+  const auto columns = whole.parameters(), alone = whole.alone(1, 1).parameters();
+  CHECK(std::equal(columns.begin(), columns.end(), alone.begin(), alone.end(),
+                   [](const ParameterColumn& a, const ParameterColumn& b) { return a.path == b.path; }));
 }
 
 }  // namespace test_plan

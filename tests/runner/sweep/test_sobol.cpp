@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -12,22 +11,29 @@ using namespace rodsweep;
 
 namespace test_sobol {
 
-std::vector<double> drawn(const Plan& plan, const std::string& path) {
-  for (const ParameterColumn& column : plan.parameters()) {
-    if (column.path == path) return std::get<ColumnValues<double>>(column.values).all();
-  }
-  FAIL("no column " + path);
-  return {};
+TEST_CASE("counter-based random numbers are the same on every machine") {
+  CHECK(random_stream("") == 0xcbf29ce484222325u);
+  CHECK(random_stream("a") == 0xaf63dc4c8601ec8cu);  // published FNV-1a value
+  CHECK(random_bits(0, 0, 0) == random_bits(0, 0, 0));
+  CHECK(random_bits(1, 2, 3) != random_bits(1, 3, 2));
+  CHECK(random_bits(1, 2, 3) != random_bits(2, 1, 3));
 }
 
-/// Two random keys in [0, 1].
-Json job_with(const char* sampling, int samples, int seed = 0) {
-  Json job = with("/sampling", fmt::format("\"{}\"", sampling));
-  job["scene"]["initial_angle_deg"] = uniform(0, 1);
-  job["scene"]["damping_per_s"] = uniform(0, 1);
-  job["samples"] = samples;
-  job["seed"] = seed;
-  return job;
+TEST_CASE("random numbers of neighbouring counters, seeds and streams are uncorrelated") {
+  const auto stream_a = random_stream("scene.length_m"), stream_b = random_stream("scene.radius_m");
+  constexpr int n = 20000;
+  double mean = 0, next = 0, seeds = 0, streams = 0;
+  for (std::uint64_t i = 0; i < n; ++i) {
+    const double u = random_unit(7, i, stream_a) - 0.5;
+    mean += u / n;
+    next += 12 * u * (random_unit(7, i + 1, stream_a) - 0.5) / n;
+    seeds += 12 * u * (random_unit(8, i, stream_a) - 0.5) / n;
+    streams += 12 * u * (random_unit(7, i, stream_b) - 0.5) / n;
+  }
+  CHECK(std::abs(mean) < 0.01);  // standard deviations .002 and .007
+  CHECK(std::abs(next) < 0.035);
+  CHECK(std::abs(seeds) < 0.035);
+  CHECK(std::abs(streams) < 0.035);
 }
 
 TEST_CASE("without scrambling the points are Sobol's, with the direction numbers of Joe and Kuo") {
@@ -112,14 +118,16 @@ TEST_CASE("means of even samples are as exact as docs/jobs.md says") {
 }
 
 TEST_CASE("logarithmic and whole draws and components of vectors are even too, pairs of usual keys also together") {
-  Json job = job_with("sobol", 64);
+  Json job = with("/sampling", "\"sobol\"");
+  job["samples"] = 64;
   job["scene"]["youngs_modulus_pa"] = {{"log_uniform", {1e4, 1e6}}};
   job["scene"]["segments"] = {{"integer", {3, 6}}};
   job["scene"]["length_m"] = uniform(1, 2);
   job["scene"]["tip_force_n"] = {0, uniform(0, 1), 0};
   const Plan plan = plan_of(job);
-  const auto moduli = drawn(plan, "scene.youngs_modulus_pa"), lengths = drawn(plan, "scene.length_m");
-  const auto forces = drawn(plan, "scene.tip_force_n");
+  const auto moduli = values_of<double>(plan, "scene.youngs_modulus_pa"),
+             lengths = values_of<double>(plan, "scene.length_m");
+  const auto forces = values_of<double>(plan, "scene.tip_force_n");
   int of_three = 0, soft = 0, low = 0, short_and_soft = 0;
   for (std::size_t k = 0; k < 64; ++k) {
     of_three += plan.task(static_cast<std::int64_t>(k)).segments == 3;

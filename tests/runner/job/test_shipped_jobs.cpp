@@ -1,4 +1,4 @@
-// Every shipped job after random changes is valid or is refused in plain words.
+// Every shipped job is valid and plausible; after random changes it is valid or refused in plain words.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -8,7 +8,7 @@
 using namespace rodsweep;
 using Catch::Matchers::Contains;
 
-namespace test_job_mutations {
+namespace test_shipped_jobs {
 
 namespace fs = std::filesystem;
 
@@ -18,6 +18,17 @@ std::vector<fs::path> shipped_jobs() {
     if (entry.path().extension() == ".json" && entry.path().filename() != "schema.json") jobs.push_back(entry.path());
   std::sort(jobs.begin(), jobs.end());
   return jobs;
+}
+
+TEST_CASE("every job of the project is valid, plausible and named like its file") {
+  for (const fs::path& path : shipped_jobs()) {
+    CAPTURE(path);
+    const Job job = read_job(path, MissingFiles::accepted);  // a study may need results of another study
+    CHECK(job.name == path.stem());
+    if (!is_training(job)) CHECK(Plan(job).size() > 0);
+    for (const std::string& warning : job.warnings)
+      CHECK_THAT(warning, Contains("twisted or spun"));  // on purpose, in studies of the paper's step
+  }
 }
 
 TEST_CASE("what is wrong with a job is said in plain words with its file and key, and ends nothing") {
@@ -74,4 +85,4 @@ TEST_CASE("a job with more than anyone writes is refused before it takes the mem
   CHECK_THAT(refusal, Contains("and 99980 more"));
 }
 
-}  // namespace test_job_mutations
+}  // namespace test_shipped_jobs

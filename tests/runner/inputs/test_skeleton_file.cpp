@@ -1,21 +1,12 @@
-// Trees, skeletons from files and wind in jobs: scenes made from them, refusals before the run.
+// Files of skeletons in SWC: what is read, assumed and refused, and the trees that jobs make of them.
 #include <catch2/catch.hpp>
 #include <string>
 
 #include "runner/inputs/skeleton_file.hpp"
-#include "runner/measure/plan_check.hpp"
 #include "tests/runner/job_folder.hpp"
 
 namespace rodsweep {
-namespace test_job_trees {
-
-using Catch::Contains;
-
-Json tree_job(const std::string& type = "tree", const std::string& more = "") {
-  return with("/scene", R"({"type": ")" + type + R"(", "depth": 2, "branches": 3, "segments": 2, "length_m": 2,
-      "radius_m": 0.1, "density_kg_m3": 800, "youngs_modulus_pa": 1e9, "torsion_modulus_pa": 1e8)" +
-                            more + "}");
-}
+namespace test_skeleton_file {
 
 Json skeleton_job(const std::string& more = "") {
   return with("/scene", R"({"type": "skeleton", "skeleton": "plum.swc", "density_kg_m3": 800,
@@ -33,66 +24,6 @@ constexpr const char* plum = R"(# a plum, in centimetres, z up
 
 std::string refusal_of_skeleton(const std::string& text) {
   return message_of<SkeletonError>([&] { parse_skeleton(text, "plum.swc"); });
-}
-
-TEST_CASE("a tree's keys become a tree, whose segments the plan counts") {
-  const Plan plan = plan_of(tree_job());
-  const Tree tree = std::get<Tree>(plan.spec(0).scene);
-  CHECK(tree.shape.depth == 2);
-  CHECK(tree.shape.branches == 3);
-  CHECK(tree.shape.segments == 2);
-  CHECK(tree.shape.length_m == 2);
-  CHECK(tree.radius_m == 0.1);
-  CHECK(tree.shape.phyllotaxis == TreeShape::Phyllotaxis::golden);
-  CHECK_FALSE(tree.wind);
-  CHECK(plan.task(0).segments == 27);
-  CHECK(plan.task(0).joints == 26);
-  const Tree random = std::get<Tree>(
-      plan_of(tree_job("tree", R"(, "phyllotaxis": "random", "tree_seed": 9, "modulus_exponent": 0.5)")).spec(0).scene);
-  CHECK(random.shape.phyllotaxis == TreeShape::Phyllotaxis::random);
-  CHECK(random.shape.seed == 9);
-  CHECK(random.modulus_exponent == 0.5);
-}
-
-TEST_CASE("a forest has rows of solves and systems for every tree") {
-  const Plan plan = plan_of(tree_job("forest", R"(, "rows": 2, "columns": 3, "spacing_m": 4)"));
-  const Forest forest = std::get<Forest>(plan.spec(0).scene);
-  CHECK(forest.jitter == 0.5);
-  CHECK(plan.task(0).segments == 6 * 27);
-  CHECK(plan.task(0).joints == 6 * 26);
-  CHECK(plan.task(0).rows[Rows::solve].count == 10 * 6 * 6);
-  Json data = data_job();
-  data["scene"] = tree_job("forest", R"(, "rows": 1, "columns": 2, "spacing_m": 4)")["scene"];
-  const Plan systems = plan_of(data);
-  CHECK(systems.task(0).rows[Rows::system].count == 4 * 2);
-  CHECK(systems.task(0).rows[Rows::system_segment].count == 4 * 2 * 27);
-  CHECK(systems.task(0).rows[Rows::system_joint].count == 4 * 2 * 26);
-}
-
-TEST_CASE("a forest has at most as many trees as the rods of a file can be numbered") {
-  Json job = tree_job("forest", R"(, "spacing_m": 4, "rows": 217, "columns": 151)");
-  job["scene"]["depth"] = 0;
-  CHECK(plan_of(job).task(0).segments == 32767 * 3);
-  job["scene"]["rows"] = 182;
-  job["scene"]["columns"] = {{"grid", {180, 182}}};
-  CHECK_THAT(refusal(job), Contains("job.json: scene: rows x columns is 33124") && Contains("must be at most 32767") &&
-                               Contains("several scenes"));
-}
-
-TEST_CASE("wind blows on any scene, and may be one value of a grid with none") {
-  const Plan plan = plan_of(
-      with("/scene/wind", R"({"grid": ["none", {"mean_m_s": [{"grid": [3, 5]}, 0, 1], "gust_strength": 0.3}]})"));
-  REQUIRE(plan.size() == 3);
-  CHECK_FALSE(std::get<BendingRod>(plan.spec(0).scene).wind);
-  const auto wind = std::get<BendingRod>(plan.spec(2).scene).wind;
-  REQUIRE(wind);
-  CHECK(wind->mean_m_s == Vector3(5, 0, 1));
-  CHECK(wind->gust_strength == 0.3);
-  CHECK(wind->turbulence_modes == 16);
-  CHECK(wind->drag_coefficient == 1.2);
-  CHECK(plan.inputs(0).trajectory != plan.inputs(1).trajectory);
-  CHECK(build_scene(plan.spec(1).scene).wind);
-  CHECK(plan_of(with("/scene/wind", "\"none\"")).inputs(0).trajectory == plan_of(small_job()).inputs(0).trajectory);
 }
 
 TEST_CASE("a skeleton is found beside the job; units, axis and root are brought to the scene's") {
@@ -200,15 +131,5 @@ TEST_CASE("what is assumed of a skeleton is said") {
   CHECK((scene.rods[1].position[0] - Vector3(9, 0, 0)).norm() < 1e-12);
 }
 
-TEST_CASE("nearest neighbours are refused on a tree, but not on a trunk") {
-  const auto refusal_of_neighbours = [](Json job) {
-    job["guesses"].push_back({{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}});  // the file is not read yet
-    return message_of<JobError>([&] { check_guesses(plan_of(job)); });
-  };
-  CHECK_THAT(refusal_of_neighbours(tree_job()),
-             Contains("guesses[2]: \"knn\" ") && Contains("rods with branches") && Contains("27 segments of task 0"));
-  CHECK(refusal_of_neighbours(with("/scene/depth", "0", tree_job())).empty());
-}
-
-}  // namespace test_job_trees
+}  // namespace test_skeleton_file
 }  // namespace rodsweep
