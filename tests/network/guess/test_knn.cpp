@@ -146,28 +146,4 @@ TEST_CASE("a Newton iteration without training data is answered with zero") {
   CHECK(proposal.products == 0);
 }
 
-TEST_CASE("an unseen rod of the training set's kind is guessed roughly right") {
-  std::vector<StoredSimulation> simulations;
-  for (const double length : {1.0, 1.2, 1.4, 1.6, 1.8, 2.0}) {
-    BendingRod rod = test::bending_rod(10);
-    rod.length_m = length;
-    simulations.push_back(test::stored_simulation(build_scene(rod), 15, 1));
-  }
-  BendingRod rod = test::bending_rod(17);
-  rod.length_m = 1.5;
-  const StoredSimulation unseen = test::stored_simulation(build_scene(rod), 15, 1);
-  const auto set = set_of(simulations);
-  double error = 0, norm = 0;
-  for (const StoredSystem& system : unseen.systems) {
-    error += (guess_at(set, unseen.scene, system, 3) - system.solution).squaredNorm();
-    norm += system.solution.squaredNorm();
-  }
-  CHECK(error < 0.1 * norm);
-}
-
-TEST_CASE("no neighbours is not a number of neighbours") {
-  const StoredSimulation simulation = test::stored_simulation(build_scene(test::bending_rod(4)), 1);
-  CHECK_THROWS_AS(KnnGuess(set_of({simulation}), simulation.scene, 0), std::invalid_argument);
-}
-
 }  // namespace rodsweep::test_knn
