@@ -1,6 +1,5 @@
 // Lattices: nodes and rods against nearest neighbours; rest state, held and loaded segments, stiffness of nodes,
 // refusals.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -91,27 +90,6 @@ TEST_CASE("the nodes of a lattice are where its cell has them, with a rod for ev
     const int crossings = at_nodes - static_cast<int>(nodes.size());
     CHECK(rod.segment_count() == at_nodes + between / 2);
     CHECK(rod.joint_count() == joints / 2 + crossings);
-  }
-}
-
-TEST_CASE("segments of a lattice are equal parts of the way from node to node, and all in one piece") {
-  for (const Lattice& p : shapes()) {
-    const Rod rod = build_scene(p).rods.front();
-    const double strut = p.mesh_m * (p.cell == Cell::cubic ? 1 : std::sqrt(p.cell == Cell::octet ? 0.5 : 0.75));
-    std::vector<int> piece(rod.segments.size());
-    for (std::size_t s = 0; s < piece.size(); ++s) {
-      piece[s] = static_cast<int>(s);
-      CHECK(rod.segments[s].length_m == Approx(strut / p.segments).epsilon(1e-13));
-    }
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (const Joint& joint : rod.joints) {
-        const int least = std::min(piece[joint.a], piece[joint.b]);
-        changed |= piece[joint.a] != piece[joint.b];
-        piece[joint.a] = piece[joint.b] = least;
-      }
-    }
-    CHECK(*std::max_element(piece.begin(), piece.end()) == 0);
   }
 }
 

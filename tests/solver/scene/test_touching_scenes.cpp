@@ -82,17 +82,6 @@ Knot knot() {
   return p;
 }
 
-TEST_CASE("the determinant tells a trefoil from a circle, also one that is drawn with crossings") {
-  std::vector<Vector3> trefoil, twisted;
-  for (int i = 0; i < 60; ++i) {
-    const double t = (i + 0.1) * pi / 30;
-    trefoil.emplace_back(std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t), -std::sin(3 * t));
-    twisted.emplace_back(std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t), std::sin(t));
-  }
-  CHECK(knot_determinant(trefoil) == 3);
-  CHECK(knot_determinant(twisted) == 1);
-}
-
 TEST_CASE("a knot starts as a loose overhand knot of the length asked for, its strands apart") {
   const Scene scene = build_scene(knot());
   const Rod& rod = scene.rods.front();
