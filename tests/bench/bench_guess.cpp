@@ -10,7 +10,6 @@
 #include "solver/guess/extrapolation_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
-#include "solver/guess/totals_guess.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/bench/medians.hpp"
@@ -20,25 +19,15 @@ namespace {
 using namespace rodsweep;
 
 constexpr std::array<int, 2> sizes{50, 100};  // segments
-constexpr std::array<int, 4> latents{16, 32, 48, 64};
+constexpr std::array<int, 2> latents{16, 32};
 
-/// Learned guesses: the settings of rods-large.h5 and of rods.h5, except the latent size.
-struct Kind {
-  const char* name;
-  const char* words;
-  BaseGuess base;
-  int base_size;
-};
-constexpr std::array<Kind, 2> kinds{{
-    {"subspace", "subspace 10", BaseGuess::subspace, 10},
-    {"regression", "regression 6", BaseGuess::regression, 6},
-}};
 constexpr int many_corrections = 5;
 
-CopingNetSettings settings_of(const Kind& kind, int latent) {
+/// The settings of rods.h5, except the latent size.
+CopingNetSettings settings_of(int latent) {
   CopingNetSettings settings;
-  settings.base = kind.base;
-  settings.base_size = kind.base_size;
+  settings.base = BaseGuess::regression;
+  settings.base_size = 6;
   settings.latent = latent;
   return settings;
 }
@@ -48,16 +37,11 @@ template <class Guess, auto... arguments>
 std::unique_ptr<InitialGuess> guess_of(const Scene& scene) {
   return std::make_unique<Guess>(scene, 1, arguments...);
 }
-std::unique_ptr<InitialGuess> totals_guess(const Scene& scene) {
-  return std::make_unique<TotalsGuess>(scene, guess_of<RegressionGuess, 6, 0>(scene));
-}
 constexpr auto sliding = SubspaceGuess::Window::sliding;
 constexpr auto deflation = SubspaceGuess::Use::guess_and_deflation;
-constexpr std::array<std::pair<const char*, MakeGuess>, 7> classical_guesses{{
-    {"previous", guess_of<ExtrapolationGuess, 1>},
+constexpr std::array<std::pair<const char*, MakeGuess>, 5> classical_guesses{{
     {"quadratic", guess_of<ExtrapolationGuess, 3>},
     {"regression 6", guess_of<RegressionGuess, 6, 0>},
-    {"totals regression 6", totals_guess},
     {"subspace 8", guess_of<SubspaceGuess, 8, sliding>},
     {"deflation 10", guess_of<SubspaceGuess, 10, sliding, deflation>},
     {"subspace 10", guess_of<SubspaceGuess, 10, sliding>},
@@ -103,11 +87,11 @@ struct Case {
   VectorX x0;
   SolvePosition last;
 
-  Case(const Kind& kind, int segments, int latent, FactorUse use = {}) {
+  Case(int segments, int latent, FactorUse use = {}) {
     BendingRod spec;
     spec.segments = segments;
     scene = build_scene(spec);
-    const CopingNetSettings settings = settings_of(kind, latent);
+    const CopingNetSettings settings = settings_of(latent);
     model = std::make_shared<Model>(Model{CopingNet<float>(settings, 1), {}});
     base = base_guess(settings, scene, 1);
     guess = std::make_unique<CopingNetGuess>(model, scene, 1, use);
@@ -131,24 +115,24 @@ struct Case {
 
 /// `lag`: reuses the factors of an earlier step.
 template <int corrections, bool lag = false>
-void whole(benchmark::State& state, const Kind& kind) {
-  Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), {corrections, lag ? 1000000 : 0, 0});
+void whole(benchmark::State& state) {
+  Case c(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), {corrections, lag ? 1000000 : 0, 0});
   for (auto _ : state) {
     c.guess->propose(*c.system, c.last, c.x0);
     benchmark::ClobberMemory();
   }
 }
 
-void base_alone(benchmark::State& state, const Kind& kind) {
-  Case c(kind, static_cast<int>(state.range(0)), 16);
+void base_alone(benchmark::State& state) {
+  Case c(static_cast<int>(state.range(0)), 16);
   for (auto _ : state) {
     c.base->propose(*c.system, c.last, c.x0);
     benchmark::ClobberMemory();
   }
 }
 
-void features(benchmark::State& state, const Kind& kind) {
-  Case c(kind, static_cast<int>(state.range(0)), 16);
+void features(benchmark::State& state) {
+  Case c(static_cast<int>(state.range(0)), 16);
   FeatureEncoder encoder(c.model->net.settings(), c.scene.rods.front(), c.system->matrix());
   Tensor<float> nodes(0, c.scene.rods.front().segment_count()), edges(SystemEncoding::size, state.range(0) - 1);
   for (auto _ : state) {
@@ -157,8 +141,8 @@ void features(benchmark::State& state, const Kind& kind) {
   }
 }
 
-void network(benchmark::State& state, const Kind& kind) {
-  Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+void network(benchmark::State& state) {
+  Case c(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   const Rod& rod = c.scene.rods.front();
   const CopingNet<float>& net = c.model->net;
   FeatureEncoder encoder(net.settings(), rod, c.system->matrix());
@@ -181,26 +165,23 @@ void print_summary(const Medians& median) {
     for (const auto& [name, make] : classical_guesses) std::printf(" %13.4f", median(name, n) / n * 1e6);
     std::printf("\n");
   }
-  for (const Kind& kind : kinds) {
-    const std::string of = std::string("_") + kind.name;
-    std::printf("\nA learned guess (factors on %s), us per segment\n", kind.words);
-    std::printf("%9s %7s %9s %7s %9s %9s %8s %9s\n", "segments", "latent", "weights", "base", "features", "network",
-                "GFLOP/s", "whole");
-    for (const int n : sizes)
-      for (const int latent : latents) {
-        const std::string size = of + "/" + std::to_string(n), both = size + "/" + std::to_string(latent);
-        const CopingNet<float> net(settings_of(kind, latent), 1);
-        const auto weights = static_cast<double>(net.parameters().values().size());
-        const auto per_segment = [&](double seconds) { return seconds / n * 1e6; };
-        const double seconds = median("network" + both);
-        std::printf("%9d %7d %9.0f %7.3f %9.3f %9.3f %8.0f %9.3f\n", n, latent, weights,
-                    per_segment(median("base" + size)), per_segment(median("features" + size)), per_segment(seconds),
-                    2 * weights * n / seconds * 1e-9, per_segment(median("whole" + both)));
-        std::printf("%59s %.3f, with factors of an earlier step %.3f\n", "every further correction",
-                    per_segment(median("whole_again" + both) - median("whole" + both)) / (many_corrections - 1),
-                    per_segment(median("whole_lagging" + both)));
-      }
-  }
+  std::printf("\nA learned guess (factors on regression 6), us per segment\n");
+  std::printf("%9s %7s %9s %7s %9s %9s %8s %9s\n", "segments", "latent", "weights", "base", "features", "network",
+              "GFLOP/s", "whole");
+  for (const int n : sizes)
+    for (const int latent : latents) {
+      const std::string size = "/" + std::to_string(n), both = size + "/" + std::to_string(latent);
+      const CopingNet<float> net(settings_of(latent), 1);
+      const auto weights = static_cast<double>(net.parameters().values().size());
+      const auto per_segment = [&](double seconds) { return seconds / n * 1e6; };
+      const double seconds = median("network" + both);
+      std::printf("%9d %7d %9.0f %7.3f %9.3f %9.3f %8.0f %9.3f\n", n, latent, weights,
+                  per_segment(median("base" + size)), per_segment(median("features" + size)), per_segment(seconds),
+                  2 * weights * n / seconds * 1e-9, per_segment(median("whole" + both)));
+      std::printf("%59s %.3f, with factors of an earlier step %.3f\n", "every further correction",
+                  per_segment(median("whole_again" + both) - median("whole" + both)) / (many_corrections - 1),
+                  per_segment(median("whole_lagging" + both)));
+    }
 }
 
 }  // namespace
@@ -209,21 +190,13 @@ int main(int argc, char** argv) {
   for (const int n : sizes) {
     for (const auto& [name, make] : classical_guesses)
       benchmark::RegisterBenchmark(name, [make = make](benchmark::State& state) { classical(state, make); })->Arg(n);
-    for (const Kind& kind : kinds) {
-      const auto add = [&](const char* part, auto&& run, std::vector<std::int64_t> sizes_of) {
-        benchmark::RegisterBenchmark((std::string(part) + "_" + kind.name).c_str(), [run,
-                                                                                     &kind](benchmark::State& state) {
-          run(state, kind);
-        })->Args(sizes_of);
-      };
-      add("base", base_alone, {n});
-      add("features", features, {n});
-      for (const int latent : latents) {
-        add("network", network, {n, latent});
-        add("whole", whole<1>, {n, latent});
-        add("whole_again", whole<many_corrections>, {n, latent});
-        add("whole_lagging", whole<1, true>, {n, latent});
-      }
+    benchmark::RegisterBenchmark("base", base_alone)->Arg(n);
+    benchmark::RegisterBenchmark("features", features)->Arg(n);
+    for (const int latent : latents) {
+      benchmark::RegisterBenchmark("network", network)->Args({n, latent});
+      benchmark::RegisterBenchmark("whole", whole<1>)->Args({n, latent});
+      benchmark::RegisterBenchmark("whole_again", whole<many_corrections>)->Args({n, latent});
+      benchmark::RegisterBenchmark("whole_lagging", whole<1, true>)->Args({n, latent});
     }
   }
   return run_benchmarks(argc, argv, print_summary);

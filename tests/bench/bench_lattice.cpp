@@ -144,17 +144,6 @@ void cholmod(benchmark::State& state) {
   if (a.residual(x) > 1e-10) state.SkipWithError("an inaccurate solution");
 }
 
-void substitution(benchmark::State& state) {
-  const Assembled a(scene_of(state));
-  VectorX x = a.b;
-  BlockFactor factor(a.system.matrix(), root_to_leaf_order(a.rod()));
-  factor.factorise(a.system.matrix());
-  for (auto _ : state) {
-    x = a.b;
-    factor.substitute(x);
-  }
-}
-
 template <bool lag>
 void learned(benchmark::State& state) {
   const Assembled a(scene_of(state));
@@ -174,10 +163,9 @@ void learned(benchmark::State& state) {
   }
 }
 
-const Cases costs{{"pattern", pattern},        {"plan", plan},
-                  {"assembly", assembly},      {"product", product},
-                  {"direct", direct},          {"substitution", substitution},
-                  {"learned", learned<false>}, {"lagging", learned<true>}};
+const Cases costs{{"pattern", pattern},      {"plan", plan},     {"assembly", assembly},
+                  {"product", product},      {"direct", direct}, {"learned", learned<false>},
+                  {"lagging", learned<true>}};
 const Cases direct_solves{{"whole", whole}, {"condensed", condensed}, {"cholmod", cholmod}};
 
 void print_direct_solves(const Medians& median, std::size_t i) {

@@ -189,22 +189,11 @@ void print_summary(const Medians& median) {
   }
 }
 
-void print_balanced(const Medians& median) {
-  std::printf("\nOne Newton iteration in balance of momentum over one of the paper's step\n");
-  std::printf("%6s %10s %12s %8s\n", "N", "paper [us]", "balance [us]", "ratio");
-  for (const int n : sizes) {
-    const double paper = us(median, "newton", n), balanced = us(median, "newton_balanced", n);
-    std::printf("%6d %10.3f %12.3f %8.2f\n", n, paper, balanced, balanced / paper);
-  }
-}
-
-void print_integrators(const Medians& median) {
-  std::printf("\nA step of BDF2 over one of Euler, two Newton iterations (target: at most 1.05)\n");
-  std::printf("%6s %10s %10s %8s\n", "N", "euler [us]", "bdf2 [us]", "ratio");
-  for (const int n : sizes) {
-    const double euler = us(median, "step_euler", n), bdf2 = us(median, "step_bdf2", n);
-    std::printf("%6d %10.3f %10.3f %8.2f\n", n, euler, bdf2, bdf2 / euler);
-  }
+void print_ratio(const Medians& median, const char* title, const char* one, const char* other) {
+  std::printf("\n%s\n%6s %20s %20s %8s\n", title, "N", one, other, "ratio");
+  for (const int n : sizes)
+    std::printf("%6d %20.3f %20.3f %8.2f\n", n, us(median, one, n), us(median, other, n),
+                us(median, other, n) / us(median, one, n));
 }
 
 }  // namespace
@@ -224,7 +213,9 @@ int main(int argc, char** argv) {
                  sizes);
   return run_benchmarks(argc, argv, [](const Medians& medians) {
     print_summary(medians);
-    print_balanced(medians);
-    print_integrators(medians);
+    print_ratio(medians, "A Newton iteration in balance of momentum over one of the paper's step [us]", "newton",
+                "newton_balanced");
+    print_ratio(medians, "A step of BDF2 over one of Euler, two Newton iterations [us] (target: at most 1.05)",
+                "step_euler", "step_bdf2");
   });
 }

@@ -14,11 +14,20 @@ namespace rodsweep::test {
 inline constexpr Preconditioner preconditioners[] = {
     Preconditioner::none, Preconditioner::jacobi,    Preconditioner::point_block_jacobi,
     Preconditioner::icc,  Preconditioner::block_icc, Preconditioner::cholesky};
-inline constexpr Norm norms[] = {Norm::true_residual, Norm::natural};
 
 inline const char* name(Preconditioner p) {
   static const char* const names[] = {"none", "jacobi", "point_block_jacobi", "icc", "block_icc", "cholesky"};
   return names[static_cast<std::size_t>(p)];
+}
+
+/// Calls `visit` with the settings of each preconditioner in each norm.
+template <class Visit>
+void each_solver(const Visit& visit) {
+  for (const Preconditioner p : preconditioners)
+    for (const Norm norm : {Norm::true_residual, Norm::natural}) {
+      INFO(name(p) << (norm == Norm::natural ? ", natural norm" : ""));
+      visit(CgSettings{p, norm, 0});
+    }
 }
 
 /// A Newton system of a rod in motion, and its solution.

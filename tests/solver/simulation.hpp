@@ -28,12 +28,18 @@ inline double mechanical_energy(const Scene& scene) {
   return sum;
 }
 
-/// A straight rod along +x from the origin; its first and last segments are held. `force_n`: see joint_between().
-inline Rod rod_held_at_both_ends(int segments, double length_m, const RodParameters& p, double force_n) {
-  const Vector3 end(length_m, 0, 0);
-  std::vector<SegmentSpec> specs = segments_through(straight_line(Vector3::Zero(), end, segments), p);
-  specs.front().is_static = specs.back().is_static = true;
-  return chain(specs, p, force_n);
+/// A straight, weightless rod along +x that a wall holds.
+inline BendingRod weightless_cantilever(int segments, double youngs_modulus_pa, double torsion_modulus_pa,
+                                        double length_m = 2, double radius_m = 0.05) {
+  BendingRod p;
+  p.clamp = Clamp::wall;
+  p.segments = segments;
+  p.length_m = length_m;
+  p.radius_m = radius_m;
+  p.youngs_modulus_pa = youngs_modulus_pa;
+  p.torsion_modulus_pa = torsion_modulus_pa;
+  p.gravity_m_s2.setZero();
+  return p;
 }
 
 class Simulation {
@@ -51,8 +57,10 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
+  /// A step, whatever its outcome.
+  StepReport try_step() { return stepper_.step(projection_); }
   StepReport step() {
-    const StepReport report = stepper_.step(projection_);
+    const StepReport report = try_step();
     if (report.outcome != SolveOutcome::converged)
       throw std::runtime_error(std::string("a step ended: ") + to_string(report.outcome));
     return report;

@@ -89,13 +89,6 @@ std::vector<int> shuffled(int count, unsigned seed) {
   return order;
 }
 
-bool names_each_once(std::vector<int> numbers, int count) {
-  std::sort(numbers.begin(), numbers.end());
-  std::vector<int> all(count);
-  std::iota(all.begin(), all.end(), 0);
-  return numbers == all;
-}
-
 Rod random_rod(const Edges& edges, const std::vector<int>& static_segments, unsigned seed) {
   Random random(seed);
   std::vector<SegmentSpec> segments;

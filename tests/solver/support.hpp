@@ -41,8 +41,7 @@ struct Graph {
   Edges edges;
   std::vector<int> held;  ///< segments
 };
-std::vector<int> shuffled(int count, unsigned seed);        ///< 0 ... count - 1
-bool names_each_once(std::vector<int> numbers, int count);  ///< each of 0 ... count - 1
+std::vector<int> shuffled(int count, unsigned seed);  ///< 0 ... count - 1
 /// `count` random pairs of rows. Pairs may repeat, and a row may be paired with itself.
 Edges random_couplings(int rows, int count, unsigned seed);
 

@@ -16,43 +16,6 @@ struct RigidMotion {
   Vector3 operator()(const Vector3& point) const { return turn * point + shift; }
 };
 
-inline Obstacle moved(const Obstacle& obstacle, const RigidMotion& to) {
-  struct Moved {
-    const RigidMotion& to;
-    Obstacle operator()(const HalfSpace& o) const {
-      return HalfSpace{to(o.point_m), to.turn * o.normal, to.turn * o.velocity_m_s};
-    }
-    Obstacle operator()(const Ball& o) const { return Ball{to(o.centre_m), o.radius_m, to.turn * o.velocity_m_s}; }
-    Obstacle operator()(const Capsule& o) const {
-      return Capsule{to(o.from_m), to(o.to_m), o.radius_m, to.turn * o.velocity_m_s};
-    }
-  };
-  return std::visit(Moved{to}, obstacle);
-}
-
-inline Scene moved(Scene scene, const RigidMotion& to) {
-  for (Rod& rod : scene.rods)
-    for (int s = 0; s < rod.segment_count(); ++s) {
-      rod.position[s] = to(rod.position[s]);
-      rod.orientation[s] = to.turn * rod.orientation[s];
-      rod.velocity[s] = to.turn * rod.velocity[s];
-      rod.angular_velocity[s] = to.turn * rod.angular_velocity[s];
-    }
-  scene.gravity_m_s2 = to.turn * scene.gravity_m_s2;
-  for (GravityChange& change : scene.gravity_changes) change.by_m_s2 = to.turn * change.by_m_s2;
-  for (PointLoad& load : scene.loads) {
-    load.force_n = to.turn * load.force_n;
-    load.torque_nm = to.turn * load.torque_nm;
-  }
-  for (MovingClamp& clamp : scene.clamps)
-    clamp.pose = [to, before = clamp.pose](double time_s) {
-      const Pose pose = before(time_s);
-      return Pose{to(pose.position), to.turn * pose.orientation};
-    };
-  for (Obstacle& obstacle : scene.obstacles) obstacle = moved(obstacle, to);
-  return scene;
-}
-
 // Mirror image across x = 0. It mirrors the segments' frames too: R' = S R S, S = diag(-1, 1, 1).
 inline Vector3 mirrored(const Vector3& v) { return {-v.x(), v.y(), v.z()}; }
 inline Vector3 mirrored_axis(const Vector3& v) { return {v.x(), -v.y(), -v.z()}; }  ///< an axis of rotation
@@ -60,50 +23,60 @@ inline Quaternion mirrored(const Quaternion& q) { return {q.w(), q.x(), -q.y(), 
 /// Signs of a joint's six rows in its frame: a vector, then an axis.
 inline const Vector6 mirrored_rows = (Vector6() << -1, 1, 1, 1, -1, -1).finished();
 
-inline Obstacle mirrored(const Obstacle& obstacle) {
-  struct Mirrored {
-    Obstacle operator()(const HalfSpace& o) const {
-      return HalfSpace{mirrored(o.point_m), mirrored(o.normal), mirrored(o.velocity_m_s)};
+/// The image of a scene under maps of the world's points, vectors, axes of rotation and orientations.
+template <class Point, class Vector, class Axis, class Turn>
+Scene image_of(Scene scene, const Point& point, const Vector& vector, const Axis& axis, const Turn& turn) {
+  for (Rod& rod : scene.rods)
+    for (int s = 0; s < rod.segment_count(); ++s) {
+      rod.position[s] = point(rod.position[s]);
+      rod.orientation[s] = turn(rod.orientation[s]);
+      rod.velocity[s] = vector(rod.velocity[s]);
+      rod.angular_velocity[s] = axis(rod.angular_velocity[s]);
     }
-    Obstacle operator()(const Ball& o) const {
-      return Ball{mirrored(o.centre_m), o.radius_m, mirrored(o.velocity_m_s)};
+  scene.gravity_m_s2 = vector(scene.gravity_m_s2);
+  for (GravityChange& change : scene.gravity_changes) change.by_m_s2 = vector(change.by_m_s2);
+  for (PointLoad& load : scene.loads) {
+    load.force_n = vector(load.force_n);
+    load.torque_nm = axis(load.torque_nm);
+  }
+  for (MovingClamp& clamp : scene.clamps)
+    clamp.pose = [point, turn, before = clamp.pose](double time_s) {
+      const Pose pose = before(time_s);
+      return Pose{point(pose.position), turn(pose.orientation)};
+    };
+  for (Obstacle& obstacle : scene.obstacles) {
+    if (auto* plane = std::get_if<HalfSpace>(&obstacle)) {
+      plane->point_m = point(plane->point_m);
+      plane->normal = vector(plane->normal);
+    } else if (auto* ball = std::get_if<Ball>(&obstacle)) {
+      ball->centre_m = point(ball->centre_m);
+    } else {
+      auto& capsule = std::get<Capsule>(obstacle);
+      capsule.from_m = point(capsule.from_m);
+      capsule.to_m = point(capsule.to_m);
     }
-    Obstacle operator()(const Capsule& o) const {
-      return Capsule{mirrored(o.from_m), mirrored(o.to_m), o.radius_m, mirrored(o.velocity_m_s)};
-    }
-  };
-  return std::visit(Mirrored{}, obstacle);
+    std::visit([&](auto& any) { any.velocity_m_s = vector(any.velocity_m_s); }, obstacle);
+  }
+  return scene;
 }
 
-inline Scene mirrored(Scene scene) {
-  for (Rod& rod : scene.rods) {
-    for (int s = 0; s < rod.segment_count(); ++s) {
-      rod.position[s] = mirrored(rod.position[s]);
-      rod.orientation[s] = mirrored(rod.orientation[s]);
-      rod.velocity[s] = mirrored(rod.velocity[s]);
-      rod.angular_velocity[s] = mirrored_axis(rod.angular_velocity[s]);
-    }
+inline Scene moved(const Scene& scene, const RigidMotion& to) {
+  const auto turn = [q = to.turn](const Vector3& v) -> Vector3 { return q * v; };
+  return image_of(scene, to, turn, turn, [q = to.turn](const Quaternion& of) { return q * of; });
+}
+
+inline Scene mirrored(const Scene& scene) {
+  const auto image = [](const auto& of) { return mirrored(of); };
+  Scene out = image_of(scene, image, image, mirrored_axis, image);
+  for (Rod& rod : out.rods)  // what is fixed in the frames of segments
     for (Joint& joint : rod.joints) {
       joint.arm_a = mirrored(joint.arm_a);
       joint.arm_b = mirrored(joint.arm_b);
       joint.frame_a = mirrored(joint.frame_a);
       joint.frame_b = mirrored(joint.frame_b);
     }
-  }
-  scene.gravity_m_s2 = mirrored(scene.gravity_m_s2);
-  for (GravityChange& change : scene.gravity_changes) change.by_m_s2 = mirrored(change.by_m_s2);
-  for (Obstacle& obstacle : scene.obstacles) obstacle = mirrored(obstacle);
-  for (PointLoad& load : scene.loads) {
-    load.force_n = mirrored(load.force_n);
-    load.torque_nm = mirrored_axis(load.torque_nm);
-    load.arm_m = mirrored(load.arm_m);
-  }
-  for (MovingClamp& clamp : scene.clamps)
-    clamp.pose = [before = clamp.pose](double time_s) {
-      const Pose pose = before(time_s);
-      return Pose{mirrored(pose.position), mirrored(pose.orientation)};
-    };
-  return scene;
+  for (PointLoad& load : out.loads) load.arm_m = mirrored(load.arm_m);
+  return out;
 }
 
 /// The same rod with all segments' frames rolled about their axes by one angle. Different angles would twist joints at

@@ -144,8 +144,4 @@ TEST_CASE("a wall without radius and a joint without compliance have finite modu
   CHECK(encoded(Encoding::paper, rigid).edges(3, 0) == 1e15F);
 }
 
-TEST_CASE("encodings without features of graphs are refused") {
-  CHECK_THROWS_AS(GraphEncoding(Encoding::linear_system, bent_rod()), std::invalid_argument);
-}
-
 }  // namespace rodsweep::test_graph_encoding

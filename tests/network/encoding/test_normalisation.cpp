@@ -59,8 +59,6 @@ TEST_CASE("a group that does not vary is divided by its size, or by one where it
   CHECK(d[2] == 1);
 }
 
-TEST_CASE("no normalisation of nothing") { CHECK_THROWS_AS(FeatureStatistics({1}).normalisation(), std::logic_error); }
-
 TEST_CASE("the mean squared error and its gradient, whole and in parts") {
   std::vector<double> values(12);
   Eigen::Map<Matrix> y(values.data(), 3, 4);

@@ -171,17 +171,4 @@ TEST_CASE("the loss of several systems is the sum of theirs, its gradient that o
   }
 }
 
-TEST_CASE("the exact solution leaves nothing") {
-  const Case c(test::chain(6), 9);
-  Matrix d(6, c.forest.size());
-  for (int i = 0; i < c.forest.size(); ++i) {
-    const int joint = c.forest.order[std::size_t(i)];
-    d.col(i) = (c.solution - c.base).segment<6>(6 * joint).cwiseQuotient(c.scale.segment<6>(6 * joint));
-  }
-  EnergyLoss<double> loss;
-  Matrix gradient;
-  CHECK(loss(side_by_side<double>({&c.scaled}), d, &gradient) < 1e-3);
-  CHECK(gradient.allFinite());
-}
-
 }  // namespace rodsweep::test_scaled_system

@@ -1,6 +1,5 @@
 // The encoding `linear_system` is invariant when a scene turns or is mirrored, or when its frames roll.
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <string>
 
 #include "network/guess/coping_net_guess.hpp"

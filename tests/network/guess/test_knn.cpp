@@ -70,29 +70,6 @@ TEST_CASE("neighbours weigh by the inverse of their distance") {
   CHECK((guess_at(set, scene, between, 1) - near).norm() < 1e-5 * near.norm());
 }
 
-TEST_CASE("twice as many segments in the same pose are given the same forces and torques") {
-  const Scene coarse = build_scene(test::bending_rod(8, Clamp::wall)),
-              fine = build_scene(test::bending_rod(16, Clamp::wall));
-  const double length = 8 * coarse.rods[0].segments[1].length_m, dt = 0.02;
-  const auto multipliers = [&](const Rod& rod, double step) {  // of loads that are linear along the rod
-    VectorX out(6 * rod.joint_count());
-    for (int k = 0; k < rod.joint_count(); ++k) {
-      const double left = 1 - k * rod.segments[1].length_m / length, scale = step * step;
-      out.segment<3>(6 * k) = Vector3(1, 20 * left, 3) * scale * rod.joints[k].length;
-      out.segment<3>(6 * k + 3) = Vector3(5 * left, 0, -left) * scale;
-    }
-    return out;
-  };
-  StoredSimulation simulation{coarse, dt, 1, {}};
-  simulation.systems = {planted(coarse.rods[0], Vector3::Zero(), multipliers(coarse.rods[0], dt))};
-  const auto set = set_of({simulation});
-  for (const double step : {dt, dt / 2}) {
-    const VectorX expected = multipliers(fine.rods[0], step);
-    const VectorX x0 = guess_at(set, fine, planted(fine.rods[0], Vector3::Zero(), expected), 3, step);
-    CHECK((x0 - expected).norm() < 1e-5 * expected.norm());
-  }
-}
-
 TEST_CASE("the tree finds what a look at every system finds") {
   std::vector<StoredSimulation> simulations;
   for (const int segments : {6, 8, 11, 14})
@@ -144,30 +121,6 @@ TEST_CASE("a Newton iteration without training data is answered with zero") {
   CHECK(x0.norm() == 0);
   CHECK(!proposal.nonzero);
   CHECK(proposal.products == 0);
-}
-
-TEST_CASE("an unseen rod of the training set's kind is guessed roughly right") {
-  std::vector<StoredSimulation> simulations;
-  for (const double length : {1.0, 1.2, 1.4, 1.6, 1.8, 2.0}) {
-    BendingRod rod = test::bending_rod(10);
-    rod.length_m = length;
-    simulations.push_back(test::stored_simulation(build_scene(rod), 15, 1));
-  }
-  BendingRod rod = test::bending_rod(17);
-  rod.length_m = 1.5;
-  const StoredSimulation unseen = test::stored_simulation(build_scene(rod), 15, 1);
-  const auto set = set_of(simulations);
-  double error = 0, norm = 0;
-  for (const StoredSystem& system : unseen.systems) {
-    error += (guess_at(set, unseen.scene, system, 3) - system.solution).squaredNorm();
-    norm += system.solution.squaredNorm();
-  }
-  CHECK(error < 0.1 * norm);
-}
-
-TEST_CASE("no neighbours is not a number of neighbours") {
-  const StoredSimulation simulation = test::stored_simulation(build_scene(test::bending_rod(4)), 1);
-  CHECK_THROWS_AS(KnnGuess(set_of({simulation}), simulation.scene, 0), std::invalid_argument);
 }
 
 }  // namespace rodsweep::test_knn

@@ -176,25 +176,4 @@ TEST_CASE("an output that is not finite leaves the rod unchanged; other models a
                   std::invalid_argument);
 }
 
-TEST_CASE("training makes a simulator that errs less than one that says nothing") {
-  CopingNetSettings settings = of_states();
-  Examples learned = sample_examples(settings, 6, 30);
-  CopingNet<float> net(settings, 1);
-  TrainingSettings training;
-  training.loss = LossKind::mse;
-  training.epochs = 8;
-  training.batch = 8;
-  training.shards = 1;
-  Trainer trainer(net, learned.examples, training);
-  std::vector<float> shard(trainer.shard_size());
-  double first = 0, last = 0;
-  while (trainer.step() < trainer.steps()) {
-    trainer.compute({{0, shard.data()}});
-    last = trainer.update({shard.data()});
-    if (trainer.step() == 1) first = last;
-  }
-  CHECK(first > 0.1);
-  CHECK(last < 0.3 * first);
-}
-
 }  // namespace rodsweep::test_state_network

@@ -1,8 +1,6 @@
 // Every failure of a CG solve, and the state that a solver keeps between solves.
 #include <catch2/catch.hpp>
 #include <limits>
-#include <type_traits>
-#include <utility>
 
 #include "solver/cg/petsc_session.hpp"
 #include "tests/solver/cg_runs.hpp"
@@ -18,18 +16,15 @@ TEST_CASE("a guess whose residual is known saves the product, and is solved from
   const VectorX guess = 0.9 * c.exact;
   // By the same product as CG's: rounding changes the fiftieth iteration of plain CG.
   const VectorX left = residual(c.a(), c.b(), guess);
-  for (const Preconditioner p : preconditioners)
-    for (const Norm norm : norms) {
-      INFO(name(p));
-      ConjugateGradient cg(c.a(), {p, norm, 0});
-      const Run computed = run(cg, c.b(), 1e-8, &guess);
-      const Run known = run(cg, c.b(), 1e-8, &guess, &left);
-      CHECK(known.report.outcome == SolveOutcome::converged);
-      CHECK(std::abs(known.report.iterations - computed.report.iterations) <= 1);
-      CHECK(known.report.products == known.report.iterations);
-      CHECK(computed.report.products == computed.report.iterations + 1);
-      CHECK((known.x - computed.x).norm() < 1e-6 * c.exact.norm());
-    }
+  each_solver([&](const CgSettings& settings) {
+    ConjugateGradient cg(c.a(), settings);
+    const Run computed = run(cg, c.b(), 1e-8, &guess), known = run(cg, c.b(), 1e-8, &guess, &left);
+    CHECK(known.report.outcome == SolveOutcome::converged);
+    CHECK(std::abs(known.report.iterations - computed.report.iterations) <= 1);
+    CHECK(known.report.products == known.report.iterations);
+    CHECK(computed.report.products == computed.report.iterations + 1);
+    CHECK((known.x - computed.x).norm() < 1e-6 * c.exact.norm());
+  });
 }
 
 TEST_CASE("a lagged factor solves the next matrix in fewer iterations than jacobi, and its own in one") {
@@ -62,17 +57,16 @@ TEST_CASE("a right-hand side of zero takes no iteration, with a NaN in it or in 
   bad_b[7] = nan;
   BlockMatrix bad_a = c.a();
   bad_a.blocks[bad_a.diagonal(2)].column[1][1] = nan;
-  for (const Preconditioner p : preconditioners)
-    for (const Norm norm : norms) {
-      const Run solved = run(c.a(), {p, norm, 0}, zero, 1e-8);
-      CHECK(solved.report.outcome == SolveOutcome::converged);
-      CHECK(solved.report.iterations == 0);
-      CHECK(solved.x == zero);
-      CHECK(run(c.a(), {p, norm, 0}, bad_b, 1e-8).report.outcome == SolveOutcome::not_a_number);
-      const SolveOutcome outcome = run(bad_a, {p, norm, 0}, c.b(), 1e-8).report.outcome;
-      INFO(name(p) << ": " << to_string(outcome));
-      CHECK((outcome == SolveOutcome::not_a_number || outcome == SolveOutcome::indefinite));
-    }
+  each_solver([&](const CgSettings& settings) {
+    const Run solved = run(c.a(), settings, zero, 1e-8);
+    CHECK(solved.report.outcome == SolveOutcome::converged);
+    CHECK(solved.report.iterations == 0);
+    CHECK(solved.x == zero);
+    CHECK(run(c.a(), settings, bad_b, 1e-8).report.outcome == SolveOutcome::not_a_number);
+    const SolveOutcome outcome = run(bad_a, settings, c.b(), 1e-8).report.outcome;
+    INFO(to_string(outcome));
+    CHECK((outcome == SolveOutcome::not_a_number || outcome == SolveOutcome::indefinite));
+  });
 }
 
 TEST_CASE("a residual past 1e30 times b is called diverged") {
@@ -93,18 +87,17 @@ TEST_CASE("without a guess, what x held does not matter") {
 
 TEST_CASE("a guess whose residual is not finite is an outcome, without a history that could be read") {
   const Case c = moving_chain();
-  for (const double entry :
-       {nan, std::numeric_limits<double>::infinity(), 1e200})  // the square of the last value overflows
-    for (const Preconditioner p : preconditioners)
-      for (const Norm norm : norms) {
-        INFO(name(p) << ", " << entry);
-        ConjugateGradient cg(c.a(), {p, norm, 0});
-        const VectorX guess = VectorX::Constant(c.a().unknowns(), entry);
-        const Run ended = run(cg, c.b(), 1e-8, &guess);
-        CHECK(ended.report.outcome == SolveOutcome::not_a_number);
-        CHECK(ended.report.iterations == 0);
-        CHECK(ended.history.empty());
-      }
+  // The square of the last value overflows.
+  for (const double entry : {nan, std::numeric_limits<double>::infinity(), 1e200})
+    each_solver([&](const CgSettings& settings) {
+      CAPTURE(entry);
+      ConjugateGradient cg(c.a(), settings);
+      const VectorX guess = VectorX::Constant(c.a().unknowns(), entry);
+      const Run ended = run(cg, c.b(), 1e-8, &guess);
+      CHECK(ended.report.outcome == SolveOutcome::not_a_number);
+      CHECK(ended.report.iterations == 0);
+      CHECK(ended.history.empty());
+    });
 }
 
 TEST_CASE("an indefinite matrix is called indefinite, unless the preconditioner solves it exactly") {
@@ -112,15 +105,14 @@ TEST_CASE("an indefinite matrix is called indefinite, unless the preconditioner 
   for (int row = 0; row < c.a().block_rows(); row += 5) {
     BlockMatrix bad = c.a();
     for (Lane8& column : bad.blocks[bad.diagonal(row)].column) column *= broadcast(-1);
-    for (const Preconditioner p : preconditioners)
-      for (const Norm norm : norms) {
-        const Run ended = run(bad, {p, norm, 0}, c.b(), 1e-8);
-        INFO(name(p) << ", block " << row << ": " << to_string(ended.report.outcome));
-        if (p == Preconditioner::icc)  // PETSc's LDL^T ignores the sign of D
-          CHECK((c.b() - bad.dense() * ended.x).norm() < 1e-7 * c.b().norm());
-        else
-          CHECK(ended.report.outcome == SolveOutcome::indefinite);
-      }
+    each_solver([&](const CgSettings& settings) {
+      const Run ended = run(bad, settings, c.b(), 1e-8);
+      INFO("block " << row << ": " << to_string(ended.report.outcome));
+      if (settings.preconditioner == Preconditioner::icc)  // PETSc's LDL^T ignores the sign of D
+        CHECK((c.b() - bad.dense() * ended.x).norm() < 1e-7 * c.b().norm());
+      else
+        CHECK(ended.report.outcome == SolveOutcome::indefinite);
+    });
   }
 }
 
@@ -199,60 +191,6 @@ TEST_CASE("norm_of() after matrix_changed() is in the new preconditioner's norm"
     cg.matrix_changed();
     CHECK(cg.norm_of(c.b()) == Approx(p == Preconditioner::none ? before : before / 2).epsilon(1e-12));
   }
-}
-
-TEST_CASE("solvers move, and leave a source that can be destroyed or given a new solver") {
-  static_assert(std::is_nothrow_move_constructible_v<ConjugateGradient>);
-  static_assert(std::is_nothrow_move_assignable_v<ConjugateGradient>);
-  static_assert(!std::is_copy_constructible_v<ConjugateGradient>);
-  const Case c = moving_chain();
-  const VectorX expected = run(c.a(), {}, c.b(), 1e-8).x;
-  ConjugateGradient first(c.a(), {});
-  run(first, c.b(), 1e-8);
-  ConjugateGradient second(std::move(first));
-  CHECK(run(second, c.b(), 1e-8).x == expected);
-  first = std::move(second);
-  CHECK(run(first, c.b(), 1e-8).x == expected);
-  second = ConjugateGradient(c.a(), {Preconditioner::cholesky, Norm::true_residual, 0});
-  CHECK(run(second, c.b(), 1e-8).report.iterations == 1);
-  std::vector<ConjugateGradient> many;
-  for (int i = 0; i < 5; ++i) many.emplace_back(c.a(), CgSettings{});  // growing the vector moves them
-  for (ConjugateGradient& cg : many) CHECK(run(cg, c.b(), 1e-8).x == expected);
-}
-
-TEST_CASE("a solver used a hundred times gives the same bits") {
-  const Case c = moving_chain();
-  const VectorX other = Random(5).entries(c.a().unknowns()), guess = 0.9 * c.exact;
-  for (const Preconditioner p : preconditioners) {
-    ConjugateGradient cg(c.a(), {p, Norm::true_residual, 0});
-    const Run zero = run(cg, c.b(), 1e-8), guessed = run(cg, c.b(), 1e-8, &guess);
-    for (int i = 0; i < 100; ++i) {
-      switch (i % 3) {
-        case 0: run(cg, other, 1e-4); break;
-        case 1: cg.matrix_changed(); break;
-        default: cg.norm_of(other);
-      }
-      const Run again = run(cg, c.b(), 1e-8), again_guessed = run(cg, c.b(), 1e-8, &guess);
-      REQUIRE(again.x == zero.x);
-      REQUIRE(again.history == zero.history);
-      REQUIRE(again_guessed.x == guessed.x);
-    }
-  }
-}
-
-TEST_CASE("the history is empty while recording is off, and the solution the same") {
-  const Case c = moving_chain();
-  ConjugateGradient cg(c.a(), {});
-  VectorX x = VectorX::Zero(c.a().unknowns());
-  cg.solve(c.b(), x, false, 1e-8, c.b().norm());
-  CHECK(cg.history().empty());
-  const Run recorded = run(cg, c.b(), 1e-8);
-  CHECK(recorded.x == x);
-  CHECK_FALSE(recorded.history.empty());
-  cg.keep_history(false);
-  cg.solve(c.b(), x, false, 1e-8, c.b().norm());
-  CHECK(cg.history().empty());
-  CHECK(run(cg, c.b(), 1e-8).history == recorded.history);
 }
 
 TEST_CASE("a PETSc session inside another leaves PETSc running when it ends") {

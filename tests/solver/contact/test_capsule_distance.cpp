@@ -55,13 +55,6 @@ TEST_CASE("parallel axes are closest in the middle of their overlap") {
   CHECK(none.low > none.high);
 }
 
-TEST_CASE("the place on an axis closest to a point is its foot or an end") {
-  const CapsuleAxis a{{1, 0, 0}, {2, 0, 0}};
-  CHECK(closest_point(a, {2, 5, 0}) == Approx(0.5));
-  CHECK(closest_point(a, {9, 5, 0}) == 1);
-  CHECK(closest_point(a, {-9, 5, 0}) == -1);
-}
-
 TEST_CASE("axes that fly at each other first touch when they have come as near as asked") {
   const CapsuleAxis a{{0, 0, 0}, {1, 0, 0}}, from{{0, 3, 0}, {0, 0, 1}}, to{{0, -3, 0}, {0, 0, 1}};
   const auto touch = first_touch(a, a, from, to, 0.6);

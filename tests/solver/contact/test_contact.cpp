@@ -20,44 +20,34 @@ Scene exact(Scene scene) {
   return scene;
 }
 
-TEST_CASE("two rods that meet head-on go on together, with their common momentum") {
+TEST_CASE(
+    "rods that meet head-on go on together or part with the coefficient of restitution, and keep their momentum") {
   RodParameters heavy;
   heavy.density_kg_m3 = 3000;
-  Touching t(exact(contact_scene({capsule({0, 0, -1}, {0, 0, 1}, {2, 0, 0}, heavy),
-                                  capsule({2.5 * r, 0, -1}, {2.5 * r, 0, 1}, {-1, 0, 0})})),
-             0.01);
-  const Vector3 momentum = test::linear_momentum(t.scene);
-  t.run(5);
-  for (const Rod& rod : t.scene.rods) {
-    CHECK((rod.velocity[0] - Vector3((3 * 2 - 1) / 4.0, 0, 0)).norm() < 1e-6);
-    CHECK(rod.angular_velocity[0].norm() < 1e-6);
-  }
-  CHECK((test::linear_momentum(t.scene) - momentum).norm() < 1e-12 * momentum.norm());
-  CHECK(test::nearest(t.scene) == Approx(1).epsilon(1e-6));
-}
-
-TEST_CASE("rods that meet head-on part with the coefficient of restitution, and keep their momentum") {
-  RodParameters heavy;
-  heavy.density_kg_m3 = 3000;
-  for (const double restitution : {0.1, 0.5, 1.0}) {
+  for (const double restitution : {0.0, 0.1, 0.5, 1.0}) {
     Scene scene = exact(contact_scene(
         {capsule({0, 0, -1}, {0, 0, 1}, {2, 0, 0}, heavy), capsule({2.5 * r, 0, -1}, {2.5 * r, 0, 1}, {-1, 0, 0})}));
     scene.contact->restitution = restitution;
     Touching t(scene, 0.01);
     t.run(5);
     const double common = (3 * 2 - 1) / 4.0, apart = restitution * 3;
-    CHECK(t.scene.rods[0].velocity[0].x() == Approx(common - apart / 4));
-    CHECK(t.scene.rods[1].velocity[0].x() == Approx(common + apart * 3 / 4));
+    const double expected[] = {common - apart / 4, common + apart * 3 / 4};
+    for (int rod = 0; rod < 2; ++rod) {
+      CHECK((t.scene.rods[rod].velocity[0] - Vector3(expected[rod], 0, 0)).norm() < 1e-6);
+      CHECK(t.scene.rods[rod].angular_velocity[0].norm() < 1e-6);
+    }
+    if (restitution == 0) CHECK(test::nearest(t.scene) == Approx(1).epsilon(1e-6));
   }
 }
 
 /// Heights of a capsule's centre above its radius, dropped on a floor.
-std::vector<double> bouncing(double from_m, double restitution, double dt, Integrator integrator, double duration_s) {
+std::vector<double> bouncing(double from_m, double restitution, double dt, Integrator integrator, bool balance,
+                             double duration_s) {
   const Vector3 at(0, r + from_m, 0), along(0.5, 0, 0);
   Scene scene = contact_scene({capsule(at - along, at + along, {0, 0, 0})}, 0.3, {0, -9.81, 0});
   scene.obstacles = {HalfSpace{}};
   scene.contact->restitution = restitution;
-  Touching t(scene, dt, integrator);
+  Touching t(scene, dt, integrator, balance);
   std::vector<double> heights;
   for (double s = 0; s < duration_s; s += dt) {
     t.step();
@@ -68,13 +58,15 @@ std::vector<double> bouncing(double from_m, double restitution, double dt, Integ
 
 TEST_CASE("a capsule rises by the square of the restitution after each bounce, and rests when it is due") {
   for (const Integrator integrator : {Integrator::euler, Integrator::bdf2})
-    for (const double restitution : {0.6, 0.9, 1.0})
+    for (const double restitution : {0.0, 0.6, 0.9, 1.0})
       for (const double dt : {2e-3, 5e-3, 1e-2})
         for (const double from_m : {0.5, 0.4712}) {
           const double rest_s = std::sqrt(2 * from_m / 9.81) * (1 + restitution) / (1 - restitution);
+          const bool balance = restitution == 0 && from_m == 0.5;
           const std::vector<double> heights =
-              bouncing(from_m, restitution, dt, integrator, std::min(8.0, 1.3 * rest_s));
-          INFO("BDF2 " << (integrator == Integrator::bdf2) << ", e " << restitution << ", dt " << dt);
+              bouncing(from_m, restitution, dt, integrator, balance, std::min(8.0, 1.3 * rest_s));
+          INFO("BDF2 " << (integrator == Integrator::bdf2) << ", e " << restitution << ", dt " << dt << ", from "
+                       << from_m);
           double apex = from_m, moved_s = 0;
           for (std::size_t i = 1; i + 1 < heights.size(); ++i) {
             if (std::abs(heights[i + 1] - heights[i]) > 2e-6) moved_s = dt * static_cast<double>(i + 1);
@@ -163,31 +155,6 @@ TEST_CASE("collisions never give kinetic energy, and keep linear momentum to rou
     }
 }
 
-TEST_CASE("rods that collide keep linear momentum, stay whole and give no energy") {
-  RodParameters p;
-  p.youngs_modulus_pa = 1e8;
-  p.torsion_modulus_pa = 4e7;
-  std::vector<Rod> rods;
-  for (int k = 0; k < 4; ++k) {
-    const Vector3 at(0.7 * std::cos(k * pi / 2), 0.03 * k, 0.7 * std::sin(k * pi / 2)), along(0.1, 0.5, 0.1 * k);
-    rods.push_back(test::straight_rod(at - along, at + along, 12, p));
-    for (Vector3& v : rods.back().velocity) v = -4 * at;
-  }
-  Touching t(contact_scene(rods, 0.3), 0.002);
-  const Vector3 momentum = test::linear_momentum(t.scene), angular = test::angular_momentum(t.scene);
-  const double start = test::kinetic_energy(t.scene);
-  CHECK(t.run(150) < 0.01);
-  const double size = start / 2;  // scale of momenta: the rods move at 2.8 m/s, less than a metre from the middle
-  CHECK((test::linear_momentum(t.scene) - momentum).norm() < 1e-10 * size);
-  CHECK((test::angular_momentum(t.scene) - angular).norm() < 0.02 * size);
-  double energy = test::kinetic_energy(t.scene);
-  for (const Rod& rod : t.scene.rods) {
-    energy += elastic_energy(rod);
-    CHECK(joint_gap(rod) < 1e-5);
-  }
-  CHECK(energy < 0.5 * start);
-}
-
 /// Shoots a rod at another one, `radii` per step, at an angle between them; true if it hits and does not pass.
 bool stays_before(double angle_deg, double radii, double offset, int segments) {
   const double dt = 0.01, angle = angle_deg * pi / 180;
@@ -226,22 +193,6 @@ TEST_CASE("a rod shot at another at one radius per step, and faster, never passe
         INFO(segments << " segments at " << angle << " degrees, " << radii << " radii per step");
         CHECK(stays_before(angle, radii, 0.06, segments));
       }
-}
-
-TEST_CASE("a rod that folds comes to lie on itself") {
-  RodParameters p;
-  p.youngs_modulus_pa = 1e4;
-  Rod rod = test::straight_rod({0, 0, -0.9}, {0, 0, 0.9}, 18, p);
-  for (int s = 0; s < 18; ++s) rod.velocity[s] = {0.5 * std::pow(rod.position[s].z() / 0.9, 2) * 12, 0, 0};
-  for (int s = 0; s < 18; ++s) rod.velocity[s].z() = -6 * rod.position[s].z();
-  Touching t(contact_scene({rod}, 0.2), 0.01);
-  double nearest = HUGE_VAL;
-  for (int i = 0; i < 60; ++i) {
-    t.step();
-    nearest = std::min(nearest, test::nearest(t.scene));
-  }
-  CHECK(nearest < 1.001);  // it touched itself
-  CHECK(nearest > 0.99);
 }
 
 TEST_CASE("a rod that is fed against a floor bends, and is not flung away") {
@@ -284,23 +235,22 @@ TEST_CASE("a scene in which nothing touches takes the same steps, bit for bit, w
 }
 
 TEST_CASE("contact settings and half-spaces that are none are refused") {
-  Scene scene = contact_scene({capsule({0, 0, 0}, {0, 0, 1}, {0, 0, 0})}, -0.1);
-  CHECK_THROWS_WITH(TimeStepper(scene, {}), "friction is -0.1; must be at least 0 and finite");
-  scene.contact->friction = 0;
-  scene.contact->recovery = 1.5;
-  CHECK_THROWS_WITH(TimeStepper(scene, {}), "recovery is 1.5; must be from 0 to 1");
-  scene.contact->recovery = 1;
-  scene.contact->restitution = 2;
-  CHECK_THROWS_WITH(TimeStepper(scene, {}), "restitution is 2; must be from 0 to 1");
-  scene.contact->restitution = 1;
-  scene.contact->obstacle_friction = -1;
-  CHECK_THROWS_WITH(TimeStepper(scene, {}), "obstacle_friction is -1; must be at least 0 and finite");
-  scene.contact->obstacle_friction = {};
-  scene.contact->tolerance = 0;
-  CHECK_THROWS_WITH(TimeStepper(scene, {}), "tolerance is 0; must be positive");
-  scene.contact->tolerance = 1e-5;
-  scene.obstacles = {HalfSpace{{0, 0, 0}, {0, 0, 0}}};
-  CHECK_THROWS_WITH(TimeStepper(scene, {}), Catch::Contains("the normal must not be zero"));
+  const Scene good = contact_scene({capsule({0, 0, 0}, {0, 0, 1}, {0, 0, 0})});
+  const std::pair<void (*)(Scene&), const char*> refused[] = {
+      {[](Scene& s) { s.contact->friction = -0.1; }, "friction is -0.1; must be at least 0 and finite"},
+      {[](Scene& s) { s.contact->obstacle_friction = -1; }, "obstacle_friction is -1; must be at least 0 and finite"},
+      {[](Scene& s) { s.contact->recovery = 1.5; }, "recovery is 1.5; must be from 0 to 1"},
+      {[](Scene& s) { s.contact->restitution = 2; }, "restitution is 2; must be from 0 to 1"},
+      {[](Scene& s) { s.contact->tolerance = 0; }, "tolerance is 0; must be positive"},
+      {[](Scene& s) {
+         s.obstacles = {HalfSpace{{0, 0, 0}, {0, 0, 0}}};
+       },
+       "the normal must not be zero"}};
+  for (const auto& [change, what] : refused) {
+    Scene scene = good;
+    change(scene);
+    CHECK_THROWS_WITH(TimeStepper(scene, {}), Catch::Contains(what));
+  }
 }
 
 }  // namespace rodsweep::test_contact

@@ -24,7 +24,7 @@ Scene on_slope(double slope, double friction, const Vector3& axis) {
 }
 
 TEST_CASE("along a slope a capsule slides with g (sin - mu cos) above the angle of friction, and stays below it") {
-  for (const double friction : {0.2, 0.5}) {
+  for (const double friction : {0.0, 0.2, 0.5}) {
     const double limit = std::atan(friction);
     for (const double beyond : {0.02, 0.1, 0.3}) {
       const double slope = limit + beyond;
@@ -33,6 +33,7 @@ TEST_CASE("along a slope a capsule slides with g (sin - mu cos) above the angle 
       CHECK(scene.rods[0].velocity[0].x() == Approx(40 * dt * acceleration).epsilon(2e-3));
     }
     for (const double below : {0.02, 0.1}) {
+      if (friction == 0) continue;
       const Scene scene = on_slope(limit - below, friction, {0.5, 0, 0});
       CHECK(scene.rods[0].velocity[0].norm() < 1e-4);
       CHECK(std::abs(scene.rods[0].position[0].x()) < 1e-5);
@@ -40,15 +41,10 @@ TEST_CASE("along a slope a capsule slides with g (sin - mu cos) above the angle 
   }
 }
 
-TEST_CASE("across a slope a capsule rolls with 2/3 g sin, and slides when friction is less than a third of the slope") {
-  const double slope = 0.4;
-  const Scene rolling = on_slope(slope, 0.5, {0, 0, 0.5});
-  const double speed = 40 * dt * g * std::sin(slope) * 2 / 3;
-  CHECK(rolling.rods[0].velocity[0].x() == Approx(speed).epsilon(5e-3));
-  CHECK(rolling.rods[0].angular_velocity[0].z() == Approx(-speed / r).epsilon(5e-3));
-  const double friction = std::tan(slope) / 3 * 0.5;
-  const Scene sliding = on_slope(slope, friction, {0, 0, 0.5});
-  CHECK(sliding.rods[0].velocity[0].x() ==
+TEST_CASE("across a slope a capsule slides when friction is less than a third of the slope") {
+  const double slope = 0.4, friction = std::tan(slope) / 3 * 0.5;
+  const Scene scene = on_slope(slope, friction, {0, 0, 0.5});
+  CHECK(scene.rods[0].velocity[0].x() ==
         Approx(40 * dt * g * (std::sin(slope) - friction * std::cos(slope))).epsilon(5e-3));
 }
 
@@ -84,23 +80,6 @@ TEST_CASE("a rod across a slope rolls with 2/3 g sin, however far it turns in a 
         for (const double radius : {5e-5, 1e-3, 0.01, 0.1})
           for (const double step_s : {5e-4, 5e-3, 2e-2})
             if (g * step_s * step_s < 4.5 * radius) roll(segments, radius, step_s, integrator, balance);
-}
-
-TEST_CASE("without friction a slope only carries") {
-  const Scene scene = on_slope(0.3, 0, {0.5, 0, 0});
-  CHECK(scene.rods[0].velocity[0].x() == Approx(40 * dt * g * std::sin(0.3)).epsilon(1e-6));
-}
-
-TEST_CASE("a capsule hung over a fixed one by friction stays, and slips off without") {
-  for (const bool rough : {true, false}) {
-    Scene scene = contact_scene({capsule({-0.5, 2 * r, 0.1}, {0.5, 2 * r, 0.1}, {0, 0, 0})}, rough ? 0.5 : 0.0,
-                                g * Vector3(0.2, -1, 0).normalized());
-    for (const double x : {-0.3, 0.3}) scene.obstacles.push_back(Capsule{{x, 0, -1}, {x, 0, 1}, r});
-    Touching t(scene, 0.005);
-    t.run(60);
-    CHECK((std::abs(t.scene.rods[0].position[0].x()) < 1e-4) == rough);
-    CHECK(test::nearest(t.scene) > 0.9999);
-  }
 }
 
 TEST_CASE("friction between rods and with obstacles are two numbers") {

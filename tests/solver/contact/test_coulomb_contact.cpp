@@ -1,6 +1,5 @@
 // The law of one contact: the fixed point of the relaxation, for any effective mass.
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include "solver/contact/coulomb_contact.hpp"
@@ -12,17 +11,6 @@ namespace rodsweep::test_coulomb_contact {
 Matrix3 mobility(test::Random& random, const Vector3& stretches) {
   const Matrix3 turn = random.quaternion().toRotationMatrix();
   return turn * stretches.asDiagonal() * turn.transpose();
-}
-
-TEST_CASE("the frame of a contact is a rotation whose first axis is the normal") {
-  test::Random random(2);
-  for (int i = 0; i < 20; ++i) {
-    const Vector3 normal = random.vector(1).normalized();
-    const Matrix3 frame = contact_frame(normal);
-    CHECK(frame.col(0) == normal);
-    CHECK((frame.transpose() * frame - Matrix3::Identity()).norm() < 1e-14);
-    CHECK(frame.determinant() == Approx(1));
-  }
 }
 
 TEST_CASE("relaxations of one contact settle on the law") {

@@ -130,20 +130,6 @@ TEST_CASE("an order that fills in gives way to a better one") {
   CHECK((solve(factor, a, b).x - test::dense_solve(a.dense(), b)).lpNorm<Eigen::Infinity>() < 1e-13);
 }
 
-TEST_CASE("the order names every joint once") {
-  for (const Graph& graph : all_graphs()) {
-    INFO(graph.name);
-    const Rod rod = test::random_rod(graph.edges, graph.held, 1);
-    CHECK(test::names_each_once(root_to_leaf_order(rod), rod.joint_count()));
-  }
-}
-
-TEST_CASE("the order ends with all free and held ends, and what stands next to each other before it does not wait") {
-  CHECK(root_to_leaf_order(test::random_rod(test::chain(7), {6}, 1)) == std::vector<int>{3, 2, 4, 1, 5, 0});
-  CHECK(root_to_leaf_order(test::random_rod(test::chain(7), {3}, 1)) == std::vector<int>{4, 1, 5, 3, 2, 0});
-  CHECK(root_to_leaf_order(test::random_rod(test::ring(6), {0}, 1)) == std::vector<int>{3, 2, 4, 1, 5, 0});
-}
-
 TEST_CASE("a matrix that is not positive definite is called indefinite, wherever its bad pivot is") {
   for (const Graph& graph : {trees()[1], trees()[6], loops()[0]}) {
     const Rod rod = test::random_rod(graph.edges, graph.held, 1);
@@ -182,31 +168,6 @@ TEST_CASE("a NaN anywhere in the matrix is never converged, one in b is called w
       bad[row] = value;
       CHECK(solve(factor, good, bad).outcome == SolveOutcome::not_a_number);
     }
-}
-
-TEST_CASE("the same system gives the same bits every time, also of a factor that failed between") {
-  for (const Rod& rod : {test::random_rod(test::ring(7), {}, 1), test::random_rod(test::tree(3, 2), {0}, 1)}) {
-    const BlockMatrix a = matrix_like(rod, 2), other = matrix_like(rod, 5);
-    const VectorX b = test::Random(3).entries(a.unknowns());
-    BlockMatrix bad = a;
-    for (Block6& block : bad.blocks)
-      for (Lane8& column : block.column) column = broadcast(nan);
-    BlockFactor factor(a, root_to_leaf_order(rod));
-    const Solved first = solve(factor, a, b);
-    CHECK(first.outcome == SolveOutcome::converged);
-    for (int i = 0; i < 20; ++i) {
-      solve(factor, other, b);
-      if (i % 2) CHECK(solve(factor, bad, VectorX::Constant(b.size(), nan)).outcome != SolveOutcome::converged);
-      REQUIRE(solve(factor, a, b).x == first.x);
-    }
-  }
-}
-
-TEST_CASE("a rod without joints has an empty solution") {
-  const Rod rod = build_scene(test::bending_rod(1, Clamp::free)).rods.front();
-  const BlockMatrix a = LinearSystem(rod).matrix();
-  BlockFactor factor(a, root_to_leaf_order(rod));
-  CHECK(solve(factor, a, VectorX(0)).outcome == SolveOutcome::converged);
 }
 
 }  // namespace rodsweep::test_block_factor

@@ -88,21 +88,4 @@ TEST_CASE("a condensed system has the answer of the whole one") {
   }
 }
 
-TEST_CASE("a condensed system follows the masses of an iteration that keeps the balance") {
-  Rod rod = shaken(lattice(Lattice::Cell::cubic, 2, 3, Held::side), 4);
-  rod.lambda = 1e-4 * test::Random(5).entries(6 * rod.joint_count());
-  rod.free_position = rod.position;
-  rod.free_orientation = rod.orientation;
-  LinearSystem system(rod);
-  system.assemble_balanced(rod, 0.02);
-  Condensation condensation(rod);
-  REQUIRE(condensation.assemble(rod, system.linearization(), 0.02));
-  VectorX g, d;
-  condensation.condense(system.rhs(), g);
-  const VectorX y = test::dense_solve(condensation.matrix().dense(), g);
-  condensation.expand(system.rhs(), y.data(), d);
-  const VectorX exact = test::dense_solve(system.matrix().dense(), system.rhs());
-  CHECK((d - exact).norm() < 1e-8 * exact.norm());
-}
-
 }  // namespace rodsweep::test_condensation

@@ -2,15 +2,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "solver/factor/direct_factor.hpp"
-#include "tests/solver/simulation.hpp"
-#include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
-#include "tests/solver/turned.hpp"
 
 namespace rodsweep::test_direct_factor {
 
@@ -50,23 +46,6 @@ double residual_of(const LinearSystem& system, const VectorX& x) {
 }
 
 double difference(const VectorX& one, const VectorX& other) { return (one - other).norm() / other.norm(); }
-
-/// The same rod with other numbers: segment s becomes segments[s], joint k becomes joints[k].
-Rod renumbered(const Rod& rod, const std::vector<int>& segments, const std::vector<int>& joints) {
-  Rod out = rod;
-  for (std::size_t s = 0; s < segments.size(); ++s) {
-    const auto to = static_cast<std::size_t>(segments[s]);
-    out.segments[to] = rod.segments[s];
-    out.position[to] = rod.position[s];
-    out.orientation[to] = rod.orientation[s];
-  }
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    Joint& joint = out.joints[static_cast<std::size_t>(joints[k])] = rod.joints[k];
-    joint.a = segments[static_cast<std::size_t>(rod.joints[k].a)];
-    joint.b = segments[static_cast<std::size_t>(rod.joints[k].b)];
-  }
-  return out;
-}
 
 TEST_CASE(
     "lattices that stretch physically are condensed; chains, trees, rings and nets of almost rigid rods are not") {
@@ -187,52 +166,6 @@ TEST_CASE("the same system gives the same bits, whatever was solved before; a sy
   CHECK(solved(fresh, rod, system) == x);
   const Rod still = rod_of(slender_lattice(Cell::body_centred, 3));
   CHECK(solved(factor, still, test::assembled(still, dt)).norm() < 1e-12 * x.norm());
-}
-
-TEST_CASE("renumbering, turning and shifting a rod change its solution by rounding only") {
-  for (const Cell cell : {Cell::cubic, Cell::octet}) {
-    const Rod rod = test::shaken(rod_of(slender_lattice(cell, 4)), 1, 1e-3);
-    DirectFactor factor(rod);
-    const VectorX x = solved(factor, rod, test::assembled(rod, dt));
-
-    const std::vector<int> joints = test::shuffled(rod.joint_count(), 4);
-    const Rod other = renumbered(rod, test::shuffled(rod.segment_count(), 3), joints);
-    DirectFactor of_other(other);
-    CHECK(of_other.condenses());
-    const VectorX y = solved(of_other, other, test::assembled(other, dt));
-    VectorX back(x.size());
-    for (int k = 0; k < rod.joint_count(); ++k)
-      back.segment<6>(6 * k) = y.segment<6>(6 * joints[static_cast<std::size_t>(k)]);
-    CHECK(difference(back, x) < 1e-11);
-
-    Rod moved = rod;
-    test::move_rigidly(moved, test::motions[0].turn, test::motions[0].shift);
-    CHECK(difference(solved(factor, moved, test::assembled(moved, dt)), x) < 1e-11);
-  }
-}
-
-TEST_CASE("a lattice moves as it does by the factor of A") {
-  for (const std::optional<double> momentum_tolerance : {std::optional<double>(), std::optional<double>(1e-9)}) {
-    Scene scene = build_scene(slender_lattice(Cell::cubic, 4, 3, Held::corners, 1e7)), whole = scene;
-    DirectSolve direct(scene);
-    REQUIRE(DirectFactor(scene.rods.front()).condenses());
-    BlockFactor factor(LinearSystem(whole.rods.front()).matrix(), root_to_leaf_order(whole.rods.front()));
-    SolveBy by_whole([&](const LinearSystem& system, const SolvePosition&, VectorX& x) {
-      return factor.solve(system.matrix(), system.rhs(), x);
-    });
-    LinearProjection one(scene, direct, momentum_tolerance), other(whole, by_whole, momentum_tolerance);
-    const StepSettings settings{dt, 20, 1e-11};
-    TimeStepper stepper(scene, settings), of_whole(whole, settings);
-    for (int step = 0; step < 15; ++step) {
-      const StepReport report = stepper.step(one), expected = of_whole.step(other);
-      REQUIRE(report.outcome == SolveOutcome::converged);
-      CHECK(report.newton_iterations == expected.newton_iterations);
-      CHECK(report.balanced == expected.balanced);
-    }
-    CHECK(test::distance(scene, build_scene(slender_lattice(Cell::cubic, 4, 3, Held::corners, 1e7)), &Rod::position) >
-          1e-2);
-    CHECK(test::distance(scene, whole, &Rod::position) < 1e-11);
-  }
 }
 
 }  // namespace rodsweep::test_direct_factor

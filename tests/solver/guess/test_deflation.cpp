@@ -22,15 +22,6 @@ CgReport solve(const OneRod& one, VectorX& x, bool nonzero, double tolerance, De
   return cg.solve(one.system.rhs(), x, nonzero, tolerance, one.system.rhs().norm(), deflation);
 }
 
-TEST_CASE("without history there is nothing to project out") {
-  OneRod one;
-  SubspaceGuess guess = deflating(one.scene, 3);
-  VectorX x0 = VectorX::Ones(one.size());
-  CHECK_FALSE(guess.propose(one.system, {0, 0, 0}, x0).nonzero);
-  CHECK(guess.deflation() == nullptr);
-  CHECK(x0.isZero(0));
-}
-
 TEST_CASE("guesses that use a deflating guess deflate when they use it") {
   OneRod one;
   VectorX x0(one.size());
@@ -126,24 +117,6 @@ TEST_CASE("deflated by solutions that are nearly the same, CG reaches what its r
     CHECK(with.iterations <= solve(one, plain, false, 1e-9, nullptr).iterations);
     CHECK((one.system.rhs() - one.a * x0).norm() < 2e-9 * one.system.rhs().norm());
   }
-}
-
-TEST_CASE("the same CG deflates one system and not the next") {
-  OneRod one;
-  SubspaceGuess guess = deflating(one.scene, 2);
-  test::Random random(9);
-  for (int k = 0; k < 2; ++k) guess.accept(one.system, {k, 0, 0}, random.entries(one.size()));
-  VectorX x0(one.size()), first = VectorX::Zero(one.size()), last = first;
-  guess.propose(one.system, {2, 0, 0}, x0);
-  ConjugateGradient cg(one.system.matrix(), {});
-  const double norm = one.system.rhs().norm();
-  const CgReport before = cg.solve(one.system.rhs(), first, false, 1e-6, norm);
-  VectorX x = x0;
-  CHECK(cg.solve(one.system.rhs(), x, true, 1e-6, norm, guess.deflation()).outcome == SolveOutcome::converged);
-  CHECK((one.system.rhs() - one.a * x).norm() < 1e-5 * norm);
-  const CgReport after = cg.solve(one.system.rhs(), last, false, 1e-6, norm);
-  CHECK(after.iterations == before.iterations);
-  CHECK(last == first);
 }
 
 }  // namespace rodsweep::test_deflation

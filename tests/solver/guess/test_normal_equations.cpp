@@ -70,17 +70,6 @@ TEST_CASE("a vector that the preferred ones span is dropped, and the rest solved
   CHECK((c.segment(4, 5) - expected.tail(5)).norm() < 1e-9 * expected.norm());
 }
 
-TEST_CASE("how much of a vector must be new is asked for") {
-  MatrixX v = vectors(2, 6);
-  v.col(1) = v.col(0) + 1e-3 * v.col(1) * (v.col(0).norm() / v.col(1).norm());
-  for (const double smallest : {1e-8, 1e-4}) {
-    NormalEquations equations(2, smallest);
-    fill(equations, gram_of(v));
-    equations.factorise(2);
-    CHECK((solved(equations, v.transpose() * v.col(1))[1] == 0) == (smallest == 1e-4));
-  }
-}
-
 TEST_CASE("a vector whose products are not numbers is dropped alone") {
   const MatrixX v = vectors(9, 8);
   MatrixX gram = gram_of(v);

@@ -1,8 +1,10 @@
 // A guess by regression on earlier right-hand sides: exact if possible, else least squares; no matrix product.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 #include "solver/guess/regression_guess.hpp"
+#include "solver/guess/totals_guess.hpp"
 #include "solver/step/projection.hpp"
 #include "tests/solver/support.hpp"
 
@@ -89,6 +91,34 @@ TEST_CASE("noise in the stored solutions is not blown up by coefficients of oppo
   CHECK((x0 - exact).norm() > 20 * noise * exact.norm());
   damped.propose(one.system, {2, 0, 0}, x0);
   CHECK((x0 - exact).norm() < 2 * noise * exact.norm());
+}
+
+TEST_CASE("a regression combines totals as the first right-hand sides of their steps make up today's") {
+  Scene scene = build_scene(test::bending_rod(6));
+  Rod& rod = scene.rods[0];
+  LinearSystem system(rod);
+  test::Random random(4);
+  TotalsGuess guess(scene, std::make_unique<RegressionGuess>(scene, 2, 2, 0));
+  VectorX x0(30), lambda[2], first[2], later[2];
+  for (int step = 0; step < 2; ++step) {
+    rod.lambda = lambda[step] = random.entries(30);
+    system.assemble(rod, 0.02);
+    first[step] = random.entries(30);
+    later[step] = random.entries(30);
+    guess.prepare({step, 0, 0});
+    guess.propose(system, {step, 0, 0}, x0);
+    guess.accept(system, {step, 0, 0}, first[step]);
+    rod.lambda = random.entries(30);
+    system.assemble(rod, 0.02);
+    guess.prepare({step, 1, 0});
+    guess.propose(system, {step, 1, 0}, x0);
+    guess.accept(system, {step, 1, 0}, later[step]);
+  }
+  rod.lambda = 3 * lambda[0] - 2 * lambda[1];  // b is -C - alpha~ lambda with C = 0 in all steps
+  system.assemble(rod, 0.02);
+  guess.prepare({2, 0, 0});
+  guess.propose(system, {2, 0, 0}, x0);
+  CHECK((x0 - (3 * (first[0] + later[0]) - 2 * (first[1] + later[1]))).norm() < 1e-9 * x0.norm());
 }
 
 }  // namespace rodsweep::test_regression_guess

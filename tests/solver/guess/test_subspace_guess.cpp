@@ -4,7 +4,6 @@
 
 #include "solver/guess/extrapolation_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
-#include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_subspace_guess {
@@ -66,37 +65,6 @@ TEST_CASE("fischer starts again with the newest solution when full, subspace for
   CHECK(subspace.propose(one.system, {4, 0, 0}, x0).products == 3);
   for (const int kept : {1, 2, 3}) CHECK(std::abs(error_along(one, x0, stored[kept])) < 1e-10);
   CHECK(std::abs(error_along(one, x0, stored[0])) > 1e-6);
-}
-
-TEST_CASE("fischer and subspace beat zero on a slowly changing rod, and subspace never loses to previous") {
-  BendingRod rod;
-  rod.segments = 12;
-  rod.length_m = 2;
-  rod.radius_m = 0.05;
-  rod.density_kg_m3 = 1000;
-  rod.youngs_modulus_pa = rod.torsion_modulus_pa = 1e6;
-  Scene scene = build_scene(rod);
-  SubspaceGuess fischer(scene, 6, 8, Window::restarted), subspace(scene, 6, 8, Window::sliding);
-  ExtrapolationGuess previous(scene, 6, 1);
-  InitialGuess* const guesses[] = {&fischer, &subspace, &previous};
-  std::vector<double> error[3];
-  observe(scene, {0.002, 6, 1e-9}, 40, [&](const LinearSystem& system, const SolvePosition& at, const VectorX& x) {
-    VectorX x0 = x;
-    for (int g = 0; g < 3; ++g) {
-      guesses[g]->propose(system, at, x0);
-      if (at.newton == 0) error[g].push_back(test::energy_error(system.matrix().dense(), x0, x));
-      guesses[g]->accept(system, at, x);
-    }
-  });
-  double of_fischer = 0, of_subspace = 0;
-  for (std::size_t k = 20; k < 40; ++k) {
-    of_fischer += error[0][k] / 20;
-    of_subspace += error[1][k] / 20;
-    CHECK(error[1][k] <= error[2][k] * (1 + 1e-9));
-  }
-  CHECK(of_fischer < 0.1);  // 1 for a guess of zero
-  CHECK(of_subspace < 0.02);
-  CHECK(of_subspace < of_fischer);
 }
 
 }  // namespace rodsweep::test_subspace_guess

@@ -1,36 +1,13 @@
-// The block matrix and its eight-lane kernels.
+// The block matrix, and vectors stored side by side for products with it, against dense algebra.
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "solver/linear/block_matrix.hpp"
+#include "solver/linear/stored_vectors.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_block_matrix {
 
 using test::Random;
-
-TEST_CASE("sum_lanes adds all eight lanes of each vector and leaves the spare lanes zero") {
-  Lane8 v[6];
-  for (int r = 0; r < 6; ++r)
-    for (int lane = 0; lane < 8; ++lane) v[r][lane] = std::ldexp(1, lane) * (r + 1);  // lanes differ
-  const Lane8 sum = sum_lanes(v);
-  for (int r = 0; r < 6; ++r) CHECK(sum[r] == 255.0 * (r + 1));
-  CHECK(sum[6] == 0);
-  CHECK(sum[7] == 0);
-}
-
-TEST_CASE("load6 and store6 move six doubles and touch nothing else") {
-  const double from[8] = {1, 2, 3, 4, 5, 6, 77, 88};
-  const Lane8 loaded = load6(from);
-  CHECK(loaded[5] == 6);
-  CHECK(loaded[6] == 0);
-  CHECK(loaded[7] == 0);
-  double to[8] = {0, 0, 0, 0, 0, 0, -7, -8};
-  store6(to, broadcast(3));
-  for (int i = 0; i < 6; ++i) CHECK(to[i] == 3);
-  CHECK(to[6] == -7);
-  CHECK(to[7] == -8);
-}
 
 TEST_CASE("the pattern holds each coupling once, both ways, sorted, and every diagonal") {
   const BlockMatrix a(4, {{3, 1}, {1, 3}, {1, 3}, {0, 1}, {1, 1}});
@@ -66,21 +43,39 @@ TEST_CASE("the block product equals the dense one") {
   }
 }
 
-TEST_CASE("the energy norm is x^T A x and leaves A x behind") {
-  const BlockMatrix a = test::random_matrix(test::chain(5), 5, 3);
-  const VectorX x = Random(4).entries(a.unknowns());
-  VectorX scratch(a.unknowns());
-  CHECK(energy_norm_squared(a, x, scratch) == Approx(x.dot(a.dense() * x)).epsilon(1e-13));
-  CHECK((scratch - a.dense() * x).lpNorm<Eigen::Infinity>() < 1e-13);
-}
+using test::MatrixX;
 
-TEST_CASE("what Jacobi makes of a matrix follows from its diagonal") {
+TEST_CASE("vectors side by side project and combine as dense algebra does, also after one is replaced") {
   const BlockMatrix a = test::random_matrix(test::tree(2, 3), 13, 1);
-  const VectorX diagonal = a.dense().diagonal(), r = test::Random(3).entries(a.unknowns());
-  VectorX s(a.unknowns());
-  inverse_root_diagonal(a, s);
-  CHECK((s - diagonal.cwiseSqrt().cwiseInverse()).norm() < 1e-14 * s.norm());
-  CHECK(jacobi_norm_squared(a, r) == Approx(r.cwiseProduct(s).squaredNorm()).epsilon(1e-13));
+  const VectorX b = test::Random(2).entries(a.unknowns());
+  for (const int count : {1, 3, 4, 5, 8, 9, 10, 11, 12, 13, 19, 20}) {
+    INFO(count);
+    test::Random random(static_cast<unsigned>(count));
+    StoredVectors stored(a.unknowns(), count);
+    MatrixX v(a.unknowns(), count);
+    for (int k = 0; k < count + 1; ++k) {
+      const int at = k % count;
+      v.col(at) = random.entries(a.unknowns());
+      stored.set(at, v.col(at));
+    }
+    MatrixX gram = MatrixX::Zero(count, count);
+    VectorX right_side(count), x(a.unknowns());
+    for (int again = 0; again < 2; ++again) stored.project(a, b, gram, right_side);
+    const MatrixX expected = v.transpose() * a.dense() * v;
+    CHECK((gram - expected).norm() < 1e-13 * expected.norm());
+    CHECK((right_side - v.transpose() * b).norm() < 1e-13 * v.norm() * b.norm());
+    const VectorX c = random.entries(count);
+    stored.combine(c, x);
+    CHECK((x - v * c).norm() < 1e-14 * v.norm() * c.norm());
+    stored.subtract(2 * c, x.data());
+    CHECK((x + v * c).norm() < 1e-14 * v.norm() * c.norm());
+
+    StoredVectors products(a.unknowns(), count);
+    products.multiply(a, stored);
+    VectorX dots(count);
+    products.dots(x.data(), dots);
+    CHECK((dots - v.transpose() * (a.dense() * x)).norm() < 1e-13 * v.norm() * x.norm() * a.dense().norm());
+  }
 }
 
 }  // namespace rodsweep::test_block_matrix

@@ -1,10 +1,10 @@
-// A, b and the update against dense matrices from finite differences and world inertia tensors.
+// A, b and the update against dense matrices from finite differences and world inertia tensors; the product without A.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <string>
 
 #include "solver/linear/linear_system.hpp"
 #include "solver/numbers/rotation.hpp"
+#include "solver/scene/scenes.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_linear_system {
@@ -49,21 +49,6 @@ TEST_CASE("A of an unbranched rod needs no compliance to be positive definite") 
   Rod rod = test::random_rod(test::chain(6), {0}, 2);
   for (Joint& joint : rod.joints) joint.compliance.setZero();
   CHECK(test::smallest_scaled_eigenvalue(test::assembled(rod, dt).matrix().dense()) > 1e-9);
-}
-
-TEST_CASE("two joints have a block exactly where they share a segment that can move") {
-  for (const Graph& graph : graphs()) {
-    INFO(graph.name);
-    const Rod rod = test::random_rod(graph.edges, graph.held, 1);
-    const LinearSystem system(rod);
-    const auto moves = [&](int s) { return !rod.segments[s].is_static; };
-    for (int i = 0; i < rod.joint_count(); ++i)
-      for (int j = 0; j < rod.joint_count(); ++j) {
-        const Joint &u = rod.joints[i], &v = rod.joints[j];
-        const bool share = (moves(u.a) && (u.a == v.a || u.a == v.b)) || (moves(u.b) && (u.b == v.a || u.b == v.b));
-        CHECK((system.matrix().find(i, j) >= 0) == share);
-      }
-  }
 }
 
 TEST_CASE("assembling again writes the same bits, whatever was assembled between") {
@@ -119,6 +104,55 @@ TEST_CASE("a joint between two static segments is refused by number") {
   const Rod rod = test::random_rod(test::chain(5), {2, 3}, 1);
   CHECK_THROWS_MATCHES(LinearSystem(rod), SceneError,
                        Catch::Message("joint 2 joins two static segments; remove it or free one of them"));
+}
+
+using namespace test;
+
+double difference(const LinearSystem& system, const ConstraintProduct& product) {
+  const VectorX x = VectorX::Random(system.matrix().unknowns());
+  VectorX with(x), without(x);
+  system.matrix().multiply(x.data(), with.data());
+  product.multiply(x.data(), without.data());
+  return (without - with).norm() / with.norm();
+}
+
+TEST_CASE("J (M^-1 (J^T x)) + alpha~ x is A x on any graph, held or free, for every number of joints in a register") {
+  std::vector<Rod> rods{random_rod(tree(3, 3), {0}, 2), random_rod(ring(9), {}, 3), random_rod(net(4, 5), {0, 7}, 4)};
+  for (int segments = 2; segments < 20; ++segments) rods.push_back(random_rod(chain(segments), {0}, 1));
+  for (const Rod& rod : rods) {
+    INFO(rod.joint_count());
+    LinearSystem system(rod);
+    ConstraintProduct product(rod);
+    for (const double step_s : {0.02, 0.005}) {
+      system.assemble(rod, step_s);
+      product.update(rod, system.linearization(), 1 / (step_s * step_s));
+      CHECK(difference(system, product) < 1e-13);
+    }
+  }
+}
+
+TEST_CASE("large systems multiply without their matrix, small ones with it, and both follow the positions") {
+  Rod large = build_scene(lattice_of(Lattice::Cell::cubic, 4)).rods.front();
+  const Rod small = random_rod(net(3, 3), {0}, 1);
+  CHECK(LinearSystem(small).product() == nullptr);
+  LinearSystem system(large);
+  REQUIRE(system.product() != nullptr);
+  for (int i = 0; i < 2; ++i) {
+    system.assemble(large, 0.02);
+    CHECK(difference(system, *system.product()) < 1e-14);
+    for (Quaternion& q : large.orientation) q = q * Quaternion(1, 0.1, -0.2 * i, 0.05).normalized();
+  }
+  const LinearSystem moved = std::move(system);
+  CHECK(difference(moved, *moved.product()) < 1e-14);
+}
+
+TEST_CASE("with the balance of momentum kept, the product knows the mobilities that geometric stiffness leaves") {
+  Rod rod = build_scene(lattice_of(Lattice::Cell::cubic, 4)).rods.front();
+  Random random(1);
+  rod.lambda = 1e-3 * random.entries(6 * rod.joint_count());
+  LinearSystem system(rod);
+  system.assemble_balanced(rod, 0.02);
+  CHECK(difference(system, *system.product()) < 1e-14);
 }
 
 }  // namespace rodsweep::test_linear_system

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cfenv>
 #include <cstdlib>
-#include <filesystem>
 #include <limits>
 
 #include "solver/cg/cg_solver.hpp"
@@ -135,16 +134,6 @@ TEST_CASE("numbers are rounded as before, whatever a function of a plug-in chang
     CHECK(rounds_as_ever());
   }
   CHECK(rounds_as_ever());
-}
-
-TEST_CASE("the program stays in its folder when a plug-in goes to another") {
-  OneRod one;
-  const auto folder = std::filesystem::current_path();
-  {
-    const PluginGuess guess(example("leaves"), one.scene);
-    CHECK(std::filesystem::current_path() == folder);
-  }
-  CHECK(std::filesystem::current_path() == folder);
 }
 
 TEST_CASE("a call whose result is no longer wanted is interrupted, and it is said what ran") {

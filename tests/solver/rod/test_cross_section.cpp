@@ -1,4 +1,4 @@
-// Geometry and stiffness of cross-sections, and the compliance of joints.
+// Geometry of cross-sections, and the mass of their segments.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -59,40 +59,6 @@ TEST_CASE("a rectangle has Saint-Venant's torsion, whichever side is longer") {
   CHECK(rectangle(1, 2, 0).shear_coefficient == Approx(5.0 / 6));
 }
 
-TEST_CASE("stiffness is a modulus times the geometry") {
-  const CrossSection of{2, 3, 5, 7, 0.5};
-  const Section s = stiffness(of, 11, 13);
-  CHECK(s.bending_x_nm2 == 33);
-  CHECK(s.bending_y_nm2 == 55);
-  CHECK(s.torsion_nm2 == 91);
-  CHECK(s.axial_n == 22);
-  CHECK(s.shear_n == 13);
-}
-
-TEST_CASE("compliances are l / EI, l / EI and l / GJ of a circular cross-section") {
-  const Vector6 alpha = joint_compliance(0.1, circular_section(0.02, 3e6, 2e6), 7e-5);
-  const double r4 = std::pow(0.02, 4);
-  for (int row = 0; row < 3; ++row) CHECK(alpha[row] == 7e-5);
-  CHECK(alpha[3] == Approx(0.1 / (3e6 * pi * r4 / 4)).epsilon(1e-14));
-  CHECK(alpha[4] == alpha[3]);
-  CHECK(alpha[5] == Approx(0.1 / (2e6 * pi * r4 / 2)).epsilon(1e-14));
-}
-
-TEST_CASE("physical stretch is a compliance of shear across a joint and of stretch along it") {
-  const Section section = circular_section(0.05, 3e6, 1e6);
-  const Vector6 alpha = physical_compliance(0.2, section);
-  CHECK(alpha[0] == Approx(1 / (section.shear_n * 0.2)).epsilon(1e-14));
-  CHECK(alpha[1] == alpha[0]);
-  CHECK(alpha[2] == Approx(1 / (section.axial_n * 0.2)).epsilon(1e-14));
-  CHECK(alpha[3] == Approx(0.2 / section.bending_x_nm2).epsilon(1e-14));
-  CHECK(alpha[5] == Approx(0.2 / section.torsion_nm2).epsilon(1e-14));
-}
-
-TEST_CASE("the inextensible compliance opens a joint by 1e-7 of its length under its force") {
-  // alpha l F, in units of l.
-  CHECK(inextensible_compliance(0.1, 50) * 0.1 * 50 == Approx(1e-7).epsilon(1e-14));
-}
-
 TEST_CASE("a segment's mass and inertia are those of its section") {
   SegmentSpec spec;
   spec.length_m = 0.2;
@@ -101,6 +67,9 @@ TEST_CASE("a segment's mass and inertia are those of its section") {
   const Segment solid = Rod({spec}, {}).segments[0];
   CHECK(solid.mass == Approx(700 * pi * 0.0025 * 0.2));
   CHECK(solid.inertia_axial == Approx(solid.mass * 0.0025 / 2));
+  CHECK(solid.inverse_mass * solid.mass == Approx(1));
+  CHECK(solid.inverse_inertia_transverse * solid.inertia_transverse == Approx(1));
+  CHECK(solid.inverse_inertia_axial * solid.inertia_axial == Approx(1));
   CHECK(solid.inertia_transverse == Approx(solid.mass * (3 * 0.0025 + 0.04) / 12));
   spec.section = rectangle(0.03, 0.06, 0.3);
   const Segment bar = Rod({spec}, {}).segments[0];

@@ -1,4 +1,4 @@
-// Constraints and Jacobians against central differences, and under rigid motion.
+// Constraints and Jacobians against central differences. tests/solver/step/test_turned_scenes.cpp turns whole systems.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,6 @@
 namespace rodsweep::test_linearization {
 
 using test::MatrixX;
-using test::move_rigidly, test::Random;
 
 /// J of one joint as linearize() gives it, 6 x 12: u_a, phi_a, u_b, phi_b.
 MatrixX jacobian_of(const JointJacobian& j) {
@@ -79,20 +78,6 @@ TEST_CASE("bending by more than half a turn of the rest rotation is measured the
   CHECK(std::abs(c[4]) < 1e-15);
 }
 
-TEST_CASE("constraints and Jacobians are those of the rod wherever it is moved and however turned") {
-  Random random(11);
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    Rod rod = test::random_rod(test::tree(2, 3), {0}, seed);
-    const Linearization before = linearized(rod);
-    move_rigidly(rod, random.quaternion(), random.vector(10));
-    const Linearization after = linearized(rod);
-    CHECK((after.constraint - before.constraint).lpNorm<Eigen::Infinity>() < 3e-13);
-    for (int k = 0; k < rod.joint_count(); ++k)
-      CHECK((jacobian_of(after.joints[k]) - jacobian_of(before.joints[k])).norm() <
-            1e-13 * jacobian_of(before.joints[k]).norm());
-  }
-}
-
 TEST_CASE("a joint whose segments change places has the same frame: its constraint and Jacobian change their sign") {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Rod rod = test::random_rod({{0, 1}}, {}, seed);
@@ -106,19 +91,6 @@ TEST_CASE("a joint whose segments change places has the same frame: its constrai
     MatrixX expected(6, 12);
     expected << -jacobian_of(one.joints[0]).rightCols(6), -jacobian_of(one.joints[0]).leftCols(6);
     CHECK((jacobian_of(other.joints[0]) - expected).norm() < 1e-13 * expected.norm());
-  }
-}
-
-TEST_CASE("an infinitesimal rigid motion is in the null space of every Jacobian") {
-  const Rod rod = build_scene(Helix{}).rods.front();
-  const Linearization at = linearized(rod);
-  const Vector3 shift(0.3, -1, 2), spin(1, 0.5, -0.7);
-  for (int k = 0; k < rod.joint_count(); ++k) {
-    VectorX motion(12);
-    motion.segment<3>(0) = shift + spin.cross(rod.position[rod.joints[k].a]);
-    motion.segment<3>(6) = shift + spin.cross(rod.position[rod.joints[k].b]);
-    motion.segment<3>(3) = motion.segment<3>(9) = spin;
-    CHECK((world_jacobian(rod, k, at.joints[k]) * motion).norm() < 1e-12);
   }
 }
 

@@ -5,19 +5,12 @@
 #include "solver/step/gauss_seidel.hpp"
 #include "solver/step/observables.hpp"
 #include "tests/solver/simulation.hpp"
-#include "tests/solver/support.hpp"
 
 namespace rodsweep::test_physical_stretch {
 
-/// A weightless rod along +x, held by a wall.
 BendingRod rod_of(int segments, double youngs_modulus, double torsion_modulus, Stretch stretch) {
-  BendingRod p;
-  p.segments = segments;
-  p.clamp = Clamp::wall;
-  p.youngs_modulus_pa = youngs_modulus;
-  p.torsion_modulus_pa = torsion_modulus;
+  BendingRod p = weightless_cantilever(segments, youngs_modulus, torsion_modulus);
   p.stretch = stretch;
-  p.gravity_m_s2.setZero();
   return p;
 }
 
@@ -52,17 +45,6 @@ TEST_CASE("a pulled rod stretches by F L / EA, but for half a segment at its end
   }
 }
 
-TEST_CASE("a rod under its own weight stretches by w L^2 / 2 EA") {
-  BendingRod p = rod_of(40, 1e7, 4e6, Stretch::physical);
-  p.initial_angle_deg = -90;
-  p.gravity_m_s2 = Vector3(0, -9.81, 0);
-  Simulation simulation(build_scene(p), 1);
-  simulation.relax(1e-11);
-  // Joint k carries n - k segments over the length l (the wall's joint over l / 2): the sum is w L^2 / 2 EA exactly.
-  const double law = 1000 * 9.81 * 4 / 2 / 1e7;
-  CHECK(-tip(simulation.rod()).y() - 2 == Approx(law).epsilon(1e-6));
-}
-
 TEST_CASE("a transverse force shears a rod by F L / kappa G A beyond its bending") {
   const double e = 1e8, g = 2e6, stiffness = circular_section(0.05, e, g).shear_n;
   const double force = 1e-4 * stiffness;
@@ -71,34 +53,6 @@ TEST_CASE("a transverse force shears a rod by F L / kappa G A beyond its bending
     const Vector3 bent = settled_tip(rod_of(n, e, g, Stretch::inextensible), force * Vector3::UnitY());
     CHECK(pushed.y() - bent.y() == Approx(force * (2 - 1.0 / n) / stiffness).epsilon(2e-3));
   }
-}
-
-TEST_CASE(
-    "a free rod that stretches physically keeps its linear momentum; its spin drifts with the step and the strain") {
-  const auto drift = [](Stretch stretch) {
-    BendingRod p = rod_of(10, 1e7, 4e6, stretch);
-    p.clamp = Clamp::free;
-    Scene scene = build_scene(p);
-    Rod& rod = scene.rods.front();
-    test::set_rigid_velocity(rod, {1, 2, 3}, {0.3, 1, 2});
-    const Vector3 momentum = linear_momentum(rod), turning = angular_momentum(rod);
-    Simulation simulation(std::move(scene), 1e-3);
-    simulation.run(500);
-    CHECK((linear_momentum(simulation.rod()) - momentum).norm() < 1e-11 * momentum.norm());
-    return (angular_momentum(simulation.rod()) - turning).norm() / turning.norm();
-  };
-  CHECK(drift(Stretch::physical) < 2 * drift(Stretch::inextensible) + 1e-4);
-}
-
-TEST_CASE("xpbd stretches physically too: it leaves the residual of Newton's fixed point") {
-  BendingRod p = test::bending_rod(5);
-  p.stretch = Stretch::physical;
-  Scene scene = build_scene(p);
-  XpbdProjection projection(scene);
-  TimeStepper stepper(scene, {0.01, 5000, 1e-12});
-  for (int i = 0; i < 5; ++i) REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
-  CHECK(newton_residual(scene.rods.front(), scene.rods.front().constraint_dt) < 1e-11);
-  CHECK(joint_gap(scene.rods.front()) > 1e-4);
 }
 
 }  // namespace rodsweep::test_physical_stretch

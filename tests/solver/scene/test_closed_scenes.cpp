@@ -85,8 +85,6 @@ TEST_CASE("a net's rods cross where they should, and half a segment stands out o
   p.mesh_m = 0.5;
   p.held = Held::free;
   const Rod rod = build_scene(p).rods.front();
-  REQUIRE(rod.segment_count() == segment_count(p));
-  REQUIRE(rod.joint_count() == joint_count(p));
   CHECK(rod.segment_count() == 3 * 7 + 4 * 5);
   CHECK(rod.joint_count() == 3 * 6 + 4 * 4 + 12);
   CHECK(rod_length(rod) == Approx(0.25 * rod.segment_count()).epsilon(1e-13));
@@ -125,8 +123,6 @@ TEST_CASE("a net is held at a side, at its corners, or not at all") {
   for (const auto& [held, count] : std::map<Held, int>{{Held::side, 4}, {Held::corners, 4}, {Held::free, 0}}) {
     p.held = held;
     const Rod rod = build_scene(p).rods.front();
-    CHECK(rod.segment_count() == segment_count(SceneSpec(p)));
-    CHECK(rod.joint_count() == joint_count(SceneSpec(p)));
     CHECK(held_segments(rod) == count);
     CHECK(constraint_of(rod).norm() < 1e-13);
     double far = 0;

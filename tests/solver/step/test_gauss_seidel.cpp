@@ -1,12 +1,16 @@
-// What both Gauss-Seidel projections conserve and refuse, on any graph of joints.
+// Gauss-Seidel projections: what both conserve and refuse on any graph of joints; XPBD against Newton; PBD in closed
+// form.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "solver/step/gauss_seidel.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 
@@ -112,6 +116,131 @@ TEST_CASE("Gauss-Seidel refuses a joint that nothing can move") {
   const Scene scene = jointed(test::chain(4), {1, 2});
   for (const char* method : methods)
     CHECK_THROWS_WITH(make(method, scene), "joint 1 joins two static segments; remove it or free one of them");
+}
+
+/// A rod of six segments after a smooth fall of 0.1 s.
+Scene falling(double modulus_pa, std::optional<double> stretch_compliance_per_j = std::nullopt) {
+  BendingRod spec = test::bending_rod(6);
+  spec.youngs_modulus_pa = spec.torsion_modulus_pa = modulus_pa;
+  spec.stretch_compliance_per_j = stretch_compliance_per_j;
+  Simulation simulation(build_scene(spec), 1e-3, 20);
+  simulation.run(100);
+  return simulation.scene;
+}
+
+/// Orders in the step of the distance of one XPBD step from Newton's, for three halvings of `longest_s`.
+std::vector<double> orders(const Scene& start, std::vector<Vector3> Rod::*of, double longest_s, int iterations) {
+  std::vector<double> found;
+  double before = 0;
+  for (int halvings = 0; halvings < 4; ++halvings) {
+    const double dt = longest_s / (1 << halvings);
+    const double apart =
+        test::distance(test::after<XpbdProjection>(start, dt, iterations), test::after_newton(start, dt), of);
+    if (halvings > 0) found.push_back(std::log2(before / apart));
+    before = apart;
+  }
+  return found;
+}
+
+TEST_CASE("with a single joint an XPBD iteration is a Newton iteration") {
+  for (const int iterations : {1, 2, 3}) {
+    const Scene start = test::moving_scene(2);
+    Simulation newton(start, {0.02, iterations, 0});
+    newton.step();
+    const Scene xpbd = test::after<XpbdProjection>(start, 0.02, iterations);
+    REQUIRE(test::distance(newton.scene, start, &Rod::position) > 1e-3);
+    CHECK(test::distance(xpbd, newton.scene, &Rod::position) < 1e-14);
+    CHECK((xpbd.rods[0].lambda - newton.rod().lambda).norm() < 1e-10 * newton.rod().lambda.norm());
+  }
+}
+
+TEST_CASE("converged XPBD is Newton's step, to O(dt^4) in positions and O(dt^3) in velocities") {
+  // They differ in the positions at which J is evaluated. These are O(dt^2) apart.
+  const Scene start = falling(1e6);
+  for (const double order : orders(start, &Rod::position, 0.01, 5000)) CHECK(order == Approx(4).margin(0.6));
+  for (const double order : orders(start, &Rod::velocity, 0.01, 5000)) CHECK(order == Approx(3).margin(0.6));
+  const Scene newton = test::after_newton(start, 1e-3), xpbd = test::after<XpbdProjection>(start, 1e-3, 5000);
+  CHECK(test::distance(xpbd, newton, &Rod::position) < 1e-10);
+}
+
+TEST_CASE("where steps resolve all stiffness, every XPBD iteration gains two orders of the step on Newton") {
+  // alpha~ = alpha/dt^2 outgrows J M^-1 J^T: an iteration leaves a fraction O(dt^2) of a correction of O(dt^2).
+  const Scene start = falling(1e4, 1e-4);
+  for (const double order : orders(start, &Rod::position, 1e-3, 1)) CHECK(order == Approx(4).margin(0.5));
+  for (const double order : orders(start, &Rod::position, 2e-3, 2)) CHECK(order == Approx(6).margin(0.7));
+}
+
+/// Two free coaxial segments of 0.2 m and radius 0.05 m, joined end to end, at rest.
+Scene pair() {
+  SegmentSpec a{{0, 0, 0}, Quaternion::Identity(), 0.2, 0.05, 1000, false}, b = a;
+  b.position_m.z() = 0.2;
+  Scene scene;
+  scene.rods.emplace_back(std::vector{a, b},
+                          std::vector{JointSpec{0, 1, {0, 0, 0.1}, {0, 0, -0.1}, Vector6::Zero(), std::nullopt}});
+  return scene;
+}
+
+/// One iteration on the first rod.
+ProjectionReport iterate(Scene& scene, const PbdStiffness& stiffness) {
+  return PbdProjection(scene, stiffness).project(scene.rods[0], {}, 0.02, 0);
+}
+
+TEST_CASE("a shear gap closes by its stiffness, a stretched joint by the share that positions have") {
+  const double r2 = 0.05 * 0.05, l2 = 0.2 * 0.2;
+  const double turning = 2 * 12 / (3 * r2 + l2) * l2 / 4;  // i arm^2 of both sides, per w
+  for (const double stiffness : {0.25, 1.0}) {
+    Scene sheared = pair(), stretched = pair();
+    sheared.rods[0].position[1].x() += 1e-6;
+    stretched.rods[0].position[1].z() += 1e-6;
+    CHECK(iterate(sheared, {stiffness, 0}).newton_residual == Approx(1e-6 / 0.2));
+    iterate(stretched, {stiffness, 0});
+    CHECK(0.2 * joint_gap(sheared.rods[0]) == Approx(1e-6 * (1 - stiffness)).margin(1e-11));
+    CHECK(0.2 * joint_gap(stretched.rods[0]) == Approx(1e-6 * (1 - stiffness * 2 / (2 + turning))));
+  }
+}
+
+TEST_CASE("bend and twist are undone by their stiffness") {
+  for (const Vector3& axis : {Vector3(1, 0, 0), Vector3(0, 0, 1)})
+    for (const double stiffness : {0.25, 1.0}) {
+      Scene scene = pair();
+      const double angle = 1e-3;
+      scene.rods[0].orientation[1] = Quaternion(Eigen::AngleAxisd(angle, axis));
+      CHECK(iterate(scene, {0, stiffness}).newton_residual == Approx(2 * std::sin(angle / 2)));
+      const Quaternion& a = scene.rods[0].orientation[0];
+      CHECK(a.angularDistance(scene.rods[0].orientation[1]) == Approx(angle * (1 - stiffness)).margin(1e-8));
+      CHECK(a.angularDistance(Quaternion::Identity()) == Approx(angle * stiffness / 2).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("PBD knows no moduli: it is Newton's step only as they and the stretching stiffness grow without bound") {
+  const double dt = 0.01;
+  const auto cantilever = [](double modulus_pa) {
+    BendingRod spec = test::bending_rod(4);
+    spec.youngs_modulus_pa = spec.torsion_modulus_pa = modulus_pa;
+    spec.stretch_compliance_per_j = 0;
+    return build_scene(spec);
+  };
+  const Scene pbd = test::after<PbdProjection>(cantilever(1e4), dt, 20000, PbdStiffness{});
+  const auto apart = [&](double modulus_pa) {
+    return test::distance(pbd, test::after_newton(cantilever(modulus_pa), dt), &Rod::position);
+  };
+  CHECK(apart(1e4) > 1e-4);
+  for (const double modulus : {1e13, 1e14}) CHECK(apart(modulus) / apart(10 * modulus) == Approx(10).epsilon(0.01));
+  CHECK(apart(1e17) < 1e-9);
+}
+
+TEST_CASE("more iterations make a PBD rod stiffer") {
+  double sag = 3;
+  for (const int iterations : {1, 4, 16, 64}) {
+    Scene scene = build_scene(test::bending_rod(8));
+    const double height = scene.rods[0].position.back().y();
+    PbdProjection pbd(scene, {});
+    TimeStepper stepper(scene, {0.02, iterations, 0});
+    for (int step = 0; step < 400; ++step) stepper.step(pbd);
+    const double now = height - scene.rods[0].position.back().y();
+    CHECK(now < 0.9 * sag);
+    sag = now;
+  }
 }
 
 }  // namespace rodsweep::test_gauss_seidel

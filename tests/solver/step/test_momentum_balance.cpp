@@ -174,11 +174,7 @@ TEST_CASE(
 
 /// |tip - exact| / L after 30 s of a weightless cantilever of 50 segments under the tip load alpha = P L^2 / EI.
 double elastica_error(double alpha, const Vector3& exact, double dt, std::optional<double> momentum_tolerance) {
-  BendingRod p;
-  p.clamp = Clamp::wall;
-  p.segments = 50;
-  p.youngs_modulus_pa = p.torsion_modulus_pa = 1e7;
-  p.gravity_m_s2.setZero();
+  BendingRod p = weightless_cantilever(50, 1e7, 1e7);
   p.tip_force_n.y() = -alpha * p.youngs_modulus_pa * pi * std::pow(p.radius_m, 4) / 4 / (p.length_m * p.length_m);
   p.damping_per_s = 6;
   Simulation simulation(build_scene(p), dt, 12, momentum_tolerance);
@@ -247,23 +243,18 @@ TEST_CASE("in balance a tumbling rod keeps its momenta as well as in the paper's
 }
 
 TEST_CASE("a step that cannot be balanced is made as the paper's, and a single segment has nothing to balance") {
-  Scene scene = build_scene(test::bending_rod(5));
-  DirectSolve direct(scene);
-  LinearProjection projection(scene, direct, tolerance);
-  TimeStepper stepper(scene, {0.02, 10, 1e-9});
-  CHECK(stepper.step(projection).balanced);
-  scene.rods[0].lambda[7] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(std::isnan(momentum_residual(scene.rods[0])));
-  Scene other = scene;
-  const StepReport report = stepper.step(projection);
-  CHECK(report.outcome == SolveOutcome::converged);
-  CHECK_FALSE(report.balanced);
-  LinearProjection paper(other, direct);
-  TimeStepper(other, {0.02, 10, 1e-9}).step(paper);
-  for (int s = 0; s < 5; ++s) CHECK(scene.rods[0].position[s] == other.rods[0].position[s]);
-  CHECK(stepper.step(projection).balanced);
-  scene.rods[0].velocity[3].x() = std::numeric_limits<double>::quiet_NaN();
-  CHECK(stepper.step(projection).outcome != SolveOutcome::converged);
+  const StepSettings settings{0.02, 10, 1e-9};
+  Simulation balanced(build_scene(test::bending_rod(5)), settings, tolerance);
+  CHECK(balanced.step().balanced);
+  balanced.rod().lambda[7] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(std::isnan(momentum_residual(balanced.rod())));
+  Simulation paper(balanced.scene, settings);
+  CHECK_FALSE(balanced.step().balanced);
+  paper.step();
+  CHECK(balanced.rod().position == paper.rod().position);
+  CHECK(balanced.step().balanced);
+  balanced.rod().velocity[3].x() = std::numeric_limits<double>::quiet_NaN();
+  CHECK(balanced.try_step().outcome != SolveOutcome::converged);
 
   Simulation falling(build_scene(test::bending_rod(1, Clamp::free)), 0.02, 10, tolerance);
   falling.run(10);
@@ -271,59 +262,41 @@ TEST_CASE("a step that cannot be balanced is made as the paper's, and a single s
   CHECK(momentum_residual(falling.rod()) == 0);
 }
 
-TEST_CASE("a step that is taken back finds contacts as the last step left them") {
+TEST_CASE(
+    "a step that is taken back is the paper's: it finds contacts as the last step left them, and torques of loads") {
   FallingRods falling;
   falling.rods = 2;
   falling.segments = 5;
   falling.height_m = 0.12;
   falling.contact.emplace();
-  const Scene start = build_scene(falling);
-  std::vector<Vector3> positions[2];
-  for (const bool astray : {false, true}) {
-    Scene scene = start;
-    DirectSolve direct(scene);
-    bool goes_astray = false;  // returns wrong solutions of balanced systems
-    SolveBy solve([&](const LinearSystem& system, const SolvePosition& at, VectorX& x) {
-      const SolveOutcome outcome = direct.solve(system, at, 0, x);
-      if (goes_astray && system.keeps_balance()) x *= -3;
-      return outcome;
-    });
-    LinearProjection balanced(scene, solve, tolerance), paper(scene, solve);
-    TimeStepper stepper(scene, {0.01, 40, 1e-9});
-    int contacts = 0;
-    for (int step = 0; step < 30; ++step) contacts = stepper.step(balanced).contacts;
-    CHECK(contacts > 0);
-    goes_astray = astray;
-    const StepReport report = stepper.step(astray ? balanced : paper);
-    CHECK(report.outcome == SolveOutcome::converged);
-    CHECK_FALSE(report.balanced);
-    for (const Rod& rod : scene.rods)
-      positions[astray].insert(positions[astray].end(), rod.position.begin(), rod.position.end());
+  BendingRod loaded = test::bending_rod(8);
+  loaded.tip_force_n = {0, 0.5, 0};
+  loaded.tip_torque_nm = {0, 0, 0.1};
+  for (const auto& [start, steps_before] : {std::pair(build_scene(falling), 30), {build_scene(loaded), 0}}) {
+    std::vector<Vector3> positions[2];
+    for (const bool astray : {false, true}) {
+      Scene scene = start;
+      DirectSolve direct(scene);
+      bool goes_astray = false;  // returns wrong solutions of balanced systems
+      SolveBy solve([&](const LinearSystem& system, const SolvePosition& at, VectorX& x) {
+        const SolveOutcome outcome = direct.solve(system, at, 0, x);
+        if (goes_astray && system.keeps_balance()) x *= -3;
+        return outcome;
+      });
+      LinearProjection balanced(scene, solve, tolerance), paper(scene, solve);
+      TimeStepper stepper(scene, {0.01, 40, 1e-9});
+      int contacts = 0;
+      for (int step = 0; step < steps_before; ++step) contacts = stepper.step(balanced).contacts;
+      CHECK((contacts > 0) == (steps_before > 0));
+      goes_astray = astray;
+      const StepReport report = stepper.step(astray ? balanced : paper);
+      CHECK(report.outcome == SolveOutcome::converged);
+      CHECK_FALSE(report.balanced);
+      for (const Rod& rod : scene.rods)
+        positions[astray].insert(positions[astray].end(), rod.position.begin(), rod.position.end());
+    }
+    CHECK(positions[0] == positions[1]);
   }
-  CHECK(positions[0] == positions[1]);
-}
-
-TEST_CASE("a step that is taken back has the torques of loads in its prediction") {
-  BendingRod p = test::bending_rod(8);
-  p.tip_force_n = {0, 0.5, 0};
-  p.tip_torque_nm = {0, 0, 0.1};
-  std::vector<Vector3> positions[2];
-  for (const bool astray : {false, true}) {
-    Scene scene = build_scene(p);
-    DirectSolve direct(scene);
-    SolveBy solve([&](const LinearSystem& system, const SolvePosition& at, VectorX& x) {
-      const SolveOutcome outcome = direct.solve(system, at, 0, x);
-      if (system.keeps_balance()) x *= -3;
-      return outcome;
-    });
-    LinearProjection balanced(scene, solve, tolerance), paper(scene, solve);
-    TimeStepper stepper(scene, {0.01, 40, 1e-9});
-    const StepReport report = stepper.step(astray ? balanced : paper);
-    CHECK(report.outcome == SolveOutcome::converged);
-    CHECK_FALSE(report.balanced);
-    positions[astray] = scene.rods.front().position;
-  }
-  CHECK(positions[0] == positions[1]);
 }
 
 TEST_CASE("with too few iterations to share, a step that is not in balance yet is no worse than the paper's") {

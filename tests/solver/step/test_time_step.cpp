@@ -66,11 +66,12 @@ TEST_CASE("drag slows a free body by (1 + c dt)^-n, in flight and in spin") {
   }
 }
 
-TEST_CASE("a force on a free body gives it F / m, and a torque I^-1 tau") {
+TEST_CASE("forces on a free body give it F / m, and I^-1 (tau + arm x F); loads on one segment add up") {
   const double dt = 0.01;
   Scene scene = test::free_body();
-  const Vector3 force(3, -1, 2), torque(0.1, 0.2, -0.3);
-  scene.loads.push_back({0, 0, force, torque, Vector3::Zero()});
+  const Vector3 force(3, -1, 2), torque(0.1, 0.2, -0.3), arm(0.05, 0, 0.2);
+  scene.loads.push_back({0, 0, force / 2, torque, 2 * arm});
+  scene.loads.push_back({0, 0, force / 2, Vector3::Zero(), Vector3::Zero()});
   Simulation sim(scene, dt);
   const Segment& segment = sim.rod().segments[0];
   const Matrix3 r = sim.rod().orientation[0].toRotationMatrix();
@@ -78,44 +79,10 @@ TEST_CASE("a force on a free body gives it F / m, and a torque I^-1 tau") {
                         segment.inverse_inertia_axial);
   sim.run(1);
   CHECK((sim.rod().velocity[0] - dt * force / segment.mass).norm() < 1e-12);
-  const Vector3 expected = dt * (r * inverse.asDiagonal() * r.transpose() * torque);
-  CHECK((sim.rod().angular_velocity[0] - expected).norm() < 1e-12 * (1 + expected.norm()));
+  const Vector3 all = torque + (r * arm).cross(force), expected = dt * (r * inverse.asDiagonal() * r.transpose() * all);
+  CHECK((sim.rod().angular_velocity[0] - expected).norm() < 1e-11);
   sim.run(9);
   CHECK((sim.rod().velocity[0] - 10 * dt * force / segment.mass).norm() < 1e-12);
-}
-
-TEST_CASE("a force off the centre turns the body by arm x F, and loads on one segment add up") {
-  const double dt = 0.01;
-  const Vector3 force(3, -1, 2), torque(0.1, 0.2, -0.3), arm(0.05, 0, 0.2);
-  Scene one = test::free_body(), two = test::free_body();
-  const Vector3 world_arm = one.rods[0].orientation[0] * arm;
-  one.loads.push_back({0, 0, force, torque + world_arm.cross(force), Vector3::Zero()});
-  two.loads.push_back({0, 0, force / 2, torque, 2 * arm});
-  two.loads.push_back({0, 0, force / 2, Vector3::Zero(), Vector3::Zero()});
-  Simulation expected(one, dt), added(two, dt);
-  expected.run(1);
-  added.run(1);
-  CHECK((added.rod().velocity[0] - expected.rod().velocity[0]).norm() < 1e-12);
-  CHECK((added.rod().angular_velocity[0] - expected.rod().angular_velocity[0]).norm() < 1e-11);
-  REQUIRE(expected.rod().angular_velocity[0].norm() > 1e-3);
-}
-
-TEST_CASE("opposite forces at the ends of a rod stretch it by alpha l^2 F a joint, and nothing else") {
-  BendingRod spec = test::bending_rod(5, Clamp::free);
-  spec.gravity_m_s2.setZero();
-  spec.stretch_compliance_per_j = 1e-4;
-  spec.damping_per_s = 50;
-  Scene scene = build_scene(spec);
-  const double l = spec.length_m / 5, f = 7;
-  const Vector3 along = director(scene.rods[0].orientation[0]);
-  scene.loads.push_back({0, 0, -f * along, Vector3::Zero(), Vector3::Zero()});
-  scene.loads.push_back({0, 4, f * along, Vector3::Zero(), Vector3::Zero()});
-  Simulation sim(scene, 0.02);
-  sim.run(2000);
-  REQUIRE(kinetic_energy(sim.rod()) < 1e-20);
-  // C = alpha l F in units of l: the gap is alpha l^2 F.
-  CHECK(joint_gap(sim.rod()) == Approx(1e-4 * l * f).epsilon(1e-6));
-  CHECK(rod_length(sim.rod()) - 2 == Approx(4 * 1e-4 * l * l * f).epsilon(1e-6));
 }
 
 TEST_CASE("a moving clamp is where its pose says at the end of every step, and the rod follows") {
@@ -147,39 +114,6 @@ TEST_CASE("a moving clamp is where its pose says at the end of every step, and t
     before = now.position;
   }
   CHECK((sim.rod().position.back() - scene.rods[0].position.back()).norm() > 0.1);
-}
-
-TEST_CASE("a clamp that turns steadily turns a straight rod rigidly") {
-  BendingRod spec = test::bending_rod(4);
-  spec.gravity_m_s2.setZero();
-  spec.initial_angle_deg = 0;
-  Scene scene = build_scene(spec);
-  Rod& rod = scene.rods[0];
-  // A rotation about the rod's own axis: no inertial force bends the rod.
-  const Quaternion start = rod.orientation[0];
-  for (Vector3& w : rod.angular_velocity) w = Vector3(2, 0, 0);
-  const double dt = 0.01, angle = 2 * std::atan(2 * dt / 2);
-  scene.clamps.push_back({0, 0, [start, angle](double t) {
-                            return Pose{{0.25, 0, 0}, Eigen::AngleAxisd(angle * t / 0.01, Vector3::UnitX()) * start};
-                          }});
-  Simulation sim(scene, dt);
-  sim.run(50);
-  for (int s = 0; s < 4; ++s) {
-    CHECK((sim.rod().angular_velocity[s] - Vector3(2, 0, 0)).norm() < 1e-9);
-    CHECK((sim.rod().position[s] - scene.rods[0].position[s]).norm() < 1e-9);
-  }
-}
-
-TEST_CASE("static segments without a moving clamp stay, with no velocity") {
-  Simulation sim(build_scene(test::bending_rod(5)), 0.02);
-  const Vector3 position = sim.rod().position[0];
-  const Quaternion orientation = sim.rod().orientation[0];
-  sim.run(20);
-  CHECK(sim.rod().position[0] == position);
-  CHECK(sim.rod().orientation[0].coeffs() == orientation.coeffs());
-  CHECK(sim.rod().velocity[0].norm() == 0);
-  CHECK(sim.rod().angular_velocity[0].norm() < 1e-13);  // q times its conjugate is 1 up to rounding
-  CHECK(sim.rod().velocity[4].norm() > 0.1);
 }
 
 TEST_CASE("rods of one or two segments move under every clamp") {

@@ -14,12 +14,16 @@ constexpr int count = 20;
 constexpr double segment_length = 0.1, radius = 0.05, torsion_modulus = 4e6;
 constexpr double turning_time = 10, step = 0.5;
 
+/// A straight rod along +x from the origin; its first and last segments are held.
 Rod held_rod() {
   RodParameters p;
   p.radius_m = radius;
   p.youngs_modulus_pa = 1e7;
   p.torsion_modulus_pa = torsion_modulus;
-  return rod_held_at_both_ends(count, count * segment_length, p, 100);
+  const Vector3 end(count * segment_length, 0, 0);
+  std::vector<SegmentSpec> specs = segments_through(straight_line(Vector3::Zero(), end, count), p);
+  specs.front().is_static = specs.back().is_static = true;
+  return chain(specs, p, 100);
 }
 
 /// Moves the last segment to `pose_at(angle)`, from zero up to `angle`, and relaxes.
@@ -97,14 +101,7 @@ double distance_from_helix(int segments, const Vector3& w) {
     return axis.dot(x) * s * axis + std::sin(rate * s) / rate * (x - axis.dot(x) * axis) +
            (1 - std::cos(rate * s)) / rate * axis.cross(x);
   };
-  BendingRod p;
-  p.clamp = Clamp::wall;
-  p.segments = segments;
-  p.length_m = 1;
-  p.radius_m = 0.01;
-  p.youngs_modulus_pa = 1e7;
-  p.torsion_modulus_pa = 4e6;
-  p.gravity_m_s2.setZero();
+  BendingRod p = weightless_cantilever(segments, 1e7, 4e6, 1, 0.01);
   p.tip_motion = TipMotion{point(1) - x, w * 180 / pi, 2};
   Simulation simulation(build_scene(p), 0.05, 30, 1e-8);
   for (int i = 0; i < 40; ++i) simulation.relax_once();

@@ -33,15 +33,6 @@ std::complex<double> mode_factor(Scene scene, const VectorX& shape, const Vector
                          static_cast<std::size_t>(std::max(1.0, period / 5)));
 }
 
-BendingRod beam(int segments) {
-  BendingRod p;
-  p.segments = segments;
-  p.clamp = Clamp::wall;
-  p.youngs_modulus_pa = p.torsion_modulus_pa = 1e9;
-  p.gravity_m_s2.setZero();
-  return p;
-}
-
 /// Clamped-free Euler-Bernoulli mode k at the vertices, and beta L.
 constexpr double beta_length[] = {1.875104, 4.694091, 7.854757};
 
@@ -92,7 +83,7 @@ Modes chain_modes(const BendingRod& p) {
 TEST_CASE("A clamped-free beam vibrates at Euler and Bernoulli's first frequency") {
   const int n = GENERATE(50, 100);
   const double dt = 5e-4;
-  const BendingRod p = beam(n);
+  const BendingRod p = weightless_cantilever(n, 1e9, 1e9);
   const double w = beam_frequency(p, 0);
   CHECK(w / (2 * pi) == Approx(3.49745).epsilon(1e-5));
   const std::complex<double> z = mode_factor(build_scene(p), beam_mode(0, n), Vector3::UnitY(), w, dt, 1);
@@ -102,7 +93,7 @@ TEST_CASE("A clamped-free beam vibrates at Euler and Bernoulli's first frequency
 TEST_CASE("The modes of a clamped-free chain have the frequencies and the decay of its discrete eigenproblem") {
   const int k = GENERATE(0, 1, 2);
   const double dt = GENERATE(5e-4, 2e-3);
-  const BendingRod p = beam(50);
+  const BendingRod p = weightless_cantilever(50, 1e9, 1e9);
   const Modes modes = chain_modes(p);
   const double w = modes.frequency[k];
   const std::complex<double> z = mode_factor(build_scene(p), modes.shape.col(k), Vector3::UnitZ(), w, dt, 1);
@@ -113,13 +104,13 @@ TEST_CASE("The modes of a clamped-free chain have the frequencies and the decay 
 TEST_CASE("A finely divided beam has the first frequency that rotary inertia gives it", "[.long]") {
   const double dt = 5e-4;
   const auto frequency = [&](int n) {
-    const BendingRod p = beam(n);
+    const BendingRod p = weightless_cantilever(n, 1e9, 1e9);
     const double w = beam_frequency(p, 0);
     return std::tan(std::arg(mode_factor(build_scene(p), beam_mode(0, n), Vector3::UnitY(), w, dt, 2))) / dt / w;
   };
   const double limit = (4 * frequency(200) - frequency(100)) / 3;  // without the error in 1/N^2
   // Rayleigh's correction: -(1/2) (I / A) times int phi'^2 / int phi^2, which is 4.6478 / L^2 for mode 1.
-  const BendingRod p = beam(200);
+  const BendingRod p = weightless_cantilever(200, 1e9, 1e9);
   CHECK(limit == Approx(1 - 4.6478 / 2 * std::pow(p.radius_m / (2 * p.length_m), 2)).epsilon(5e-6));
 }
 

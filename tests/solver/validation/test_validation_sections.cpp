@@ -173,33 +173,6 @@ TEST_CASE("A light, stiff rod whose ends are pushed together does not stretch") 
   CHECK(joint_gap(simulation.rod()) < 1e-6);
 }
 
-TEST_CASE("A tip moves and turns as prescribed, smoothly, and then rests") {
-  Helix p;
-  p.segments = 40;
-  p.clamp = GENERATE(Clamp::segment, Clamp::wall, Clamp::free);
-  p.tip_motion = TipMotion{Vector3(0.1, 0.2, 0), Vector3(0, 0, 90), 0.4};
-  const Scene scene = build_scene(p);
-  const Rod start = scene.rods.front();
-  REQUIRE(start.segment_count() == segment_count(SceneSpec(p)));
-  CHECK(start.segments.back().is_static);
-  REQUIRE(scene.clamps.size() == 1);
-  const auto end_at = [&](double time_s) {
-    const Pose pose = scene.clamps[0].pose(time_s);
-    return Vector3(pose.position + pose.orientation * Vector3(0, 0, start.segments.back().length_m / 2));
-  };
-  CHECK((end_at(0) - tip(start)).norm() < 1e-15);
-  CHECK((end_at(0.2) - tip(start) - Vector3(0.05, 0.1, 0)).norm() < 1e-15);
-  CHECK((end_at(0.4) - tip(start) - Vector3(0.1, 0.2, 0)).norm() < 1e-15);
-  CHECK((end_at(7) - end_at(0.4)).norm() == 0);
-  for (const double at : {0.0, 0.4})
-    CHECK((end_at(at + 1e-4) - 2 * end_at(at) + end_at(std::max(at - 1e-4, 0.0))).norm() < 1e-9);
-  const Quaternion quarter(Eigen::AngleAxisd(pi / 2, Vector3::UnitZ()));
-  CHECK(scene.clamps[0].pose(1).orientation.angularDistance(quarter * start.orientation.back()) < 1e-7);
-  Simulation simulation(scene, 0.02);
-  simulation.run(30);
-  CHECK((tip(simulation.rod()) - end_at(0.4)).norm() < 1e-12);
-}
-
 TEST_CASE("Sections and tips that cannot be are refused by what is wrong with them") {
   BendingRod p = bar(10, Tube{0.06});
   CHECK_THROWS_WITH(validate(p), "section.wall_m is 0.06; must be at most radius_m, 0.050000");

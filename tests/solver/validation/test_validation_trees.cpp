@@ -1,5 +1,4 @@
 // Statics of forks, kinks and cones against beams: small deflections under a weight of 1e-5 of gravity.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 

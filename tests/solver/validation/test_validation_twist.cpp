@@ -34,13 +34,7 @@ double exact_sag(double m) {
 /// The greatest sag in the last second of six, in the same units, of a rod that is twisted in the first two.
 double sag(double part_of_greenhill, double dt, std::optional<double> momentum_tolerance,
            Integrator integrator = Integrator::euler) {
-  BendingRod p;
-  p.clamp = Clamp::wall;
-  p.segments = 120;
-  p.length_m = 1;
-  p.radius_m = 0.005;
-  p.youngs_modulus_pa = 1e9;
-  p.torsion_modulus_pa = 5e8;  // EI = GJ
+  BendingRod p = weightless_cantilever(120, 1e9, 5e8, 1, 0.005);  // EI = GJ
   p.gravity_m_s2 = {0, -0.02, 0};
   p.damping_per_s = 10;
   p.stretch = Stretch::physical;
@@ -80,15 +74,9 @@ TEST_CASE("A rod twisted below its buckling twist whirls in the paper's step, a 
 /// A beam along x is spun up about z in 15 s (Kane, Ryan & Banerjee 1987; numbers of Simo & Vu-Quoc 1986). Returns the
 /// greatest lag of its tip behind the rotating axis.
 double greatest_lag(Integrator integrator, double dt, std::optional<double> momentum_tolerance) {
-  BendingRod p;
-  p.clamp = Clamp::wall;
-  p.segments = 40;
-  p.length_m = 10;
+  BendingRod p = weightless_cantilever(40, 2.8e10, 1e10, 10);
   p.section = GivenSection{1e-3, 5e-7, 5e-7, 1e-6, 1};
   p.density_kg_m3 = 1200;
-  p.youngs_modulus_pa = 2.8e10;
-  p.torsion_modulus_pa = 1e10;
-  p.gravity_m_s2.setZero();
   p.stretch = Stretch::physical;
   Scene scene = build_scene(p);
   const auto angle = [](double t) {
