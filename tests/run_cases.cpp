@@ -1,6 +1,6 @@
-#define CATCH_CONFIG_RUNNER
+#define CATCH_CONFIG_RUNNER  // version 2
 #include "tests/run_cases.hpp"
 
-#include <catch2/catch.hpp>
+#include "tests/catch.hpp"
 
 int run_cases(int argc, char** argv) { return Catch::Session().run(argc, argv); }

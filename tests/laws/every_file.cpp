@@ -1,10 +1,10 @@
 // Every key that takes a file: files of its kind are accepted, planned and run, whatever surrounds the key, and no
 // others.
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
 
 #include "runner/measure/plan_check.hpp"
+#include "tests/catch.hpp"
 #include "tests/laws/key_places.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
@@ -88,7 +88,8 @@ TEST_CASE("a file of another kind is refused with its key, in sweeps and in swep
     if (at.key.file == FileKind::any) return;
     const Json good = accepted(at, 1).front();
     const auto is_refused = [&](const Json& job) {
-      CHECK_THAT(objection(job), Catch::StartsWith(inputs().job().native() + ": ") && Catch::Contains(at.key.name));
+      CHECK_THAT(objection(job), Catch::Matchers::StartsWith(inputs().job().native() + ": ") &&
+                                     Catch::Matchers::ContainsSubstring(at.key.name));
     };
     for (const auto& [kind, files] : inputs().all()) {
       if (kind == at.key.file) continue;
@@ -118,7 +119,7 @@ TEST_CASE("a file under two keys must be of the kind of both") {
       if (other.key.file == one.key.file || other.key.file == FileKind::any)
         CHECK(objection(job) == "");
       else
-        CHECK_THAT(objection(job), Catch::Contains(": guesses[2]." + other.path().substr(11)));
+        CHECK_THAT(objection(job), Catch::Matchers::ContainsSubstring(": guesses[2]." + other.path().substr(11)));
     }
 }
 

@@ -2,7 +2,6 @@
 // the systems and solutions that it was given. So counts do not depend on repeats, on what is recorded, on other guesses
 // or on the order of tasks. A guess without a sample here does not compile.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 #include <string>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "runner/specs/guess_keys.hpp"
 #include "solver/cg/cg_solver.hpp"
 #include "solver/linear/solve_outcome.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/data_set_examples.hpp"
 #include "tests/solver/simulation.hpp"
 

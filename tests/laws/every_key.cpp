@@ -1,9 +1,9 @@
 // Every key of a job: a grid of two values that are accepted alone is accepted, and its tasks are those of the two jobs.
 // Keys that cannot be swept say so.
-#include <catch2/catch.hpp>
 #include <tuple>
 
 #include "runner/measure/plan_check.hpp"
+#include "tests/catch.hpp"
 #include "tests/laws/key_places.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
@@ -61,7 +61,8 @@ TEST_CASE("a key that cannot be swept says so") {
   visit_keys([&](const KeyPlace& at) {
     if (at.key.sweepable) return;
     const Json value = at.job.value(Json::json_pointer(at.pointer), Json("x"));
-    CHECK_THAT(objection(at.with(grid({value, value}))), Catch::Contains(at.path() + ": this key cannot be swept"));
+    CHECK_THAT(objection(at.with(grid({value, value}))),
+               Catch::Matchers::ContainsSubstring(at.path() + ": this key cannot be swept"));
     ++refused;
   });
   CHECK(refused > 50);

@@ -2,7 +2,6 @@
 // no solve misses its tolerance, and rods move as with the direct solve. A preconditioner that is not positive definite
 // is found out. A word of a job without a sample here fails.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -11,6 +10,7 @@
 
 #include "runner/plan/plan.hpp"
 #include "runner/specs/solve_keys.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep::test_every_preconditioner {

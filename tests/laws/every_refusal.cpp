@@ -1,15 +1,15 @@
 // Every key of a job refuses what its row does not allow, with its path, the value and what is allowed: values of another
 // kind or beyond a bound, also in sweeps; misspelt names; keys that belong to another kind of object; absent keys.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
+#include "tests/catch.hpp"
 #include "tests/laws/key_places.hpp"
 
 namespace rodsweep::laws {
 namespace test_refusals {
 
-using Catch::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Kind = Key::Kind;
 
 bool is_number(const Key& key) { return key.kind == Kind::number || key.kind == Kind::integer; }
@@ -63,9 +63,10 @@ TEST_CASE("a value that a key does not take is refused with its path, itself and
     const std::string must_be = "must be " + allowed(at.key);
     for (const Json& value : wrong_values(at.key)) {
       CAPTURE(at.path(), value.dump());
-      CHECK_THAT(objection(at.with(value)), Contains(at.path() + ": " + shown(value)) && Contains(must_be));
+      CHECK_THAT(objection(at.with(value)),
+                 ContainsSubstring(at.path() + ": " + shown(value)) && ContainsSubstring(must_be));
       if (!at.key.sweepable) continue;
-      CHECK_THAT(objection(at.with({{"zip", {value}}})), Contains(at.path() + ".zip[0]: " + shown(value)));
+      CHECK_THAT(objection(at.with({{"zip", {value}}})), ContainsSubstring(at.path() + ".zip[0]: " + shown(value)));
       ++refused;
     }
   });
@@ -77,21 +78,22 @@ TEST_CASE("a sweep that a key does not take is refused with its path and what is
     if (!at.key.sweepable) return;
     CAPTURE(at.path());
     const Json some = accepted(at, 1);
-    CHECK_THAT(objection(at.with(grid(Json::array()))), Contains(at.path() + ".grid: [] is not allowed"));
+    CHECK_THAT(objection(at.with(grid(Json::array()))), ContainsSubstring(at.path() + ".grid: [] is not allowed"));
     CHECK_THAT(objection(at.with({{"grid", some}, {"zip", some}})),
-               Contains(at.path() + ": {\"grid\":") && Contains("no key other than \"grid\""));
+               ContainsSubstring(at.path() + ": {\"grid\":") && ContainsSubstring("no key other than \"grid\""));
     const auto range = [&](const char* word, Json ends) { return objection(at.with({{word, std::move(ends)}})); };
     const std::string draws = at.path() + ".uniform: uniform draws ";
     if (!is_number(at.key)) {
-      CHECK_THAT(range("uniform", {1, 2}), Contains(draws + "a number") && Contains(allowed(at.key)));
+      CHECK_THAT(range("uniform", {1, 2}), ContainsSubstring(draws + "a number") && ContainsSubstring(allowed(at.key)));
       return;
     }
-    if (at.key.kind == Kind::integer) CHECK_THAT(range("uniform", {1, 2}), Contains(draws + "fractional numbers"));
+    if (at.key.kind == Kind::integer)
+      CHECK_THAT(range("uniform", {1, 2}), ContainsSubstring(draws + "fractional numbers"));
     const std::string word = at.key.kind == Kind::integer ? "integer" : "uniform", path = at.path() + "." + word;
     for (const Json& end : out_of_bounds(at.key))
       CHECK_THAT(range(word.c_str(), {end, end}),
-                 Contains(path + "[0]: " + shown(end)) && Contains(path + "[1]: " + shown(end)));
-    CHECK_THAT(range(word.c_str(), {1}), Contains(path + ": [1] is not allowed; must be the two ends"));
+                 ContainsSubstring(path + "[0]: " + shown(end)) && ContainsSubstring(path + "[1]: " + shown(end)));
+    CHECK_THAT(range(word.c_str(), {1}), ContainsSubstring(path + ": [1] is not allowed; must be the two ends"));
   });
 }
 
@@ -100,7 +102,7 @@ TEST_CASE("a mistyped word is refused with the nearest one") {
     if (at.key.kind != Kind::choice || at.key.choices.size() < 2) return;
     for (const std::string& word : at.key.choices) {
       CAPTURE(at.path(), word);
-      CHECK_THAT(objection(at.with(word + "~")), Contains("did you mean \"" + word + "\"?"));
+      CHECK_THAT(objection(at.with(word + "~")), ContainsSubstring("did you mean \"" + word + "\"?"));
     }
   });
 }
@@ -125,7 +127,8 @@ TEST_CASE("a misspelt name of a key, or another word for it, is refused with the
     for (const std::string& name : names) {
       CAPTURE(at.path(), name);
       const std::string path = at.path().substr(0, at.path().size() - at.key.name.size()) + name;
-      CHECK_THAT(objection(renamed(at, name)), Contains(path + ": unknown key; did you mean \"" + at.key.name + "\"?"));
+      CHECK_THAT(objection(renamed(at, name)),
+                 ContainsSubstring(path + ": unknown key; did you mean \"" + at.key.name + "\"?"));
     }
   });
 }
@@ -138,9 +141,9 @@ TEST_CASE("a missing key is refused with its meaning, unit and what is allowed")
     CAPTURE(at.path());
     const std::string refusal = objection(without(at.pointer, at.job));
     if (!at.key.alternative_group.empty())
-      CHECK_THAT(refusal, Contains("missing: the " + at.key.alternative_group + ", exactly one of"));
+      CHECK_THAT(refusal, ContainsSubstring("missing: the " + at.key.alternative_group + ", exactly one of"));
     else if (at.job[here.parent_pointer()].size() > 1 || at.key.kind != Kind::object)  // else a kind of obstacle
-      CHECK_THAT(refusal, Contains(at.path() + ": missing: " + describe(at.key)));
+      CHECK_THAT(refusal, ContainsSubstring(at.path() + ": missing: " + describe(at.key)));
     found.insert(at.path());
   });
   CHECK(found.size() > 50);
@@ -164,8 +167,9 @@ TEST_CASE("a key of another kind of job, scene, solve, section, network or loss 
         CAPTURE(at.path(), other.path());
         Json job = other.job;
         job[Json::json_pointer(at.pointer)] = nullptr;
-        CHECK_THAT(objection(job), Contains(at.path() + ": this key belongs to ") &&
-                                       Contains(' ' + words + ", not to \"") && Contains(at.key.only_advice));
+        CHECK_THAT(objection(job), ContainsSubstring(at.path() + ": this key belongs to ") &&
+                                       ContainsSubstring(' ' + words + ", not to \"") &&
+                                       ContainsSubstring(at.key.only_advice));
       }
   CHECK(tried.size() > 100);
 }

@@ -1,6 +1,5 @@
 // Every sampling: a drawn value depends on seed, sample and key alone. So old values stay if another key is drawn too,
 // and if there are more samples, grid points or scenes.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <set>
@@ -8,6 +7,7 @@
 #include "runner/keys/key.hpp"
 #include "runner/sweep/sobol.hpp"
 #include "solver/numbers/counter_random.hpp"
+#include "tests/catch.hpp"
 #include "tests/laws/key_places.hpp"
 
 namespace rodsweep::laws {

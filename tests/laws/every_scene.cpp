@@ -1,19 +1,19 @@
 // Every scene of a job moves alike if it is turned, mirrored, moved away or given in other units, in both steps and by
 // both integrators; and loads, motions of clamps and changes of gravity act at each of its places.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 
 #include "runner/plan/plan.hpp"
 #include "runner/specs/scene_keys.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/job_folder.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/turned.hpp"
 
 namespace rodsweep::law_every_scene {
 
-using Catch::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 constexpr double step_s = 0.01;
 
@@ -250,7 +250,7 @@ TEST_CASE("a load moves every segment of every scene that can move, and is refus
         const double force_n = 100 * rod.segments[s].mass;
         loaded["loads"] = list_of({{"at_m", as_json(rod.position[s])}, {"force_n", as_json(force_n * direction)}});
         if (rod.segments[s].is_static) {
-          CHECK_THAT(message_of<JobError>([&] { files.scene(loaded); }), Contains("is on a held segment"));
+          CHECK_THAT(message_of<JobError>([&] { files.scene(loaded); }), ContainsSubstring("is on a held segment"));
           return;
         }
         const Scene other = after(files.scene(loaded), way, 2).scene;
@@ -277,7 +277,8 @@ TEST_CASE("a motion moves all that is held at its place in every scene, and what
                                       {"times_s", {0, 2 * step_s}},
                                       {"factors", {0, 1}}});
         if (is_moved_by_scene(plain, r, s)) {
-          CHECK_THAT(message_of<JobError>([&] { files.scene(changed); }), Contains("is moved by the scene itself"));
+          CHECK_THAT(message_of<JobError>([&] { files.scene(changed); }),
+                     ContainsSubstring("is moved by the scene itself"));
           return;
         }
         const Scene other = after(files.scene(changed), way, 3).scene;

@@ -2,7 +2,6 @@
 // every function that the program calls, and in every way in which a person may do it in Python.
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <cfenv>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "solver/plugin/plugin.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::every_user_function {
@@ -109,7 +109,7 @@ TEST_CASE("every function of a user is interrupted where it is, once its result 
       CHECK(fs::exists(begun));
       if (function == "__del__") continue;  // nothing may be thrown while an object ends
       REQUIRE(where);
-      CHECK_THAT(*where, Catch::Contains(" in " + function));
+      CHECK_THAT(*where, Catch::Matchers::ContainsSubstring(" in " + function));
     }
   fs::remove(begun);
   handle_calls({});

@@ -1,6 +1,5 @@
 // Dispatch over MPI, with the same master and workers as in memory. Runs on several numbers of ranks.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <numeric>
 #include <stdexcept>
 #include <thread>
@@ -9,6 +8,7 @@
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/worker.hpp"
 #include "runner/mpi/mpi_session.hpp"
+#include "tests/catch.hpp"
 #include "tests/mpi/world.hpp"
 
 using namespace rodsweep;

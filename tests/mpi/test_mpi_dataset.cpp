@@ -1,14 +1,14 @@
 // One data set on several ranks when only one rank can see the file. Runs in an empty folder.
-#include <catch2/catch.hpp>
 
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/text/checksum.hpp"
+#include "tests/catch.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 using namespace rodsweep;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace test_mpi_dataset {
 
@@ -50,7 +50,8 @@ TEST_CASE("ranks that read a data set together have what a process alone reads, 
 }
 
 TEST_CASE("what goes wrong with a data set is said by all ranks") {
-  CHECK_THAT(message_of<CollectiveError>([] { DatasetReader("none.h5", MPI_COMM_WORLD); }), Contains("none.h5"));
+  CHECK_THAT(message_of<CollectiveError>([] { DatasetReader("none.h5", MPI_COMM_WORLD); }),
+             ContainsSubstring("none.h5"));
   if (own_rank() == 0) {
     const Plan plan = make_data_set("damaged.h5", ragged_job());
     const hdf5::File file = hdf5::open_file("damaged.h5", H5F_ACC_RDWR);
@@ -60,7 +61,8 @@ TEST_CASE("what goes wrong with a data set is said by all ranks") {
   }
   const DatasetReader data("damaged.h5", MPI_COMM_WORLD);
   CHECK(data.read(0).systems.size() == 4);
-  CHECK_THAT(message_of<CollectiveError>([&] { data.read(1); }), Contains("is damaged: wrong checksum of task 1"));
+  CHECK_THAT(message_of<CollectiveError>([&] { data.read(1); }),
+             ContainsSubstring("is damaged: wrong checksum of task 1"));
 }
 
 }  // namespace test_mpi_dataset

@@ -1,16 +1,16 @@
 // One results file and several ranks. Runs in an empty folder that all ranks share.
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/opening.hpp"
 #include "runner/mpi/mpi_session.hpp"
+#include "tests/catch.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 TEST_CASE("ranks that write their tasks in any order leave the file that one rank leaves") {
   const Plan plan = plan_of(full_job());
@@ -62,16 +62,16 @@ TEST_CASE("every rank is refused with the same words") {
 
   std::string text =
       message_of<FileError>([&] { ResultsFile::create("taken.h5", plan, test_provenance(), MPI_COMM_WORLD); });
-  CHECK_THAT(text, Contains("taken.h5 exists already"));
+  CHECK_THAT(text, ContainsSubstring("taken.h5 exists already"));
   CHECK(everywhere_the_same(text));
   text = message_of<FileError>([&] { ResultsFile::resume("taken.h5", plan, test_provenance(), MPI_COMM_WORLD); });
-  CHECK_THAT(text, Contains("taken.h5 is not an HDF5 file"));
+  CHECK_THAT(text, ContainsSubstring("taken.h5 is not an HDF5 file"));
   CHECK(everywhere_the_same(text));
   text = message_of<FileError>([&] {
     ResultsFile::create("new.h5", plan, test_provenance(), MPI_COMM_WORLD,
                         [](const auto&) { return std::uintmax_t{1}; });
   });
-  CHECK_THAT(text, Contains("only 1 B are free"));
+  CHECK_THAT(text, ContainsSubstring("only 1 B are free"));
   CHECK(everywhere_the_same(text));
   CHECK_FALSE(std::filesystem::exists("new.h5"));
 }
@@ -83,7 +83,7 @@ TEST_CASE("a folder that is another one on some host is refused by all ranks, an
   CHECK_NOTHROW(check_common_place(common / "a.h5", MPI_COMM_WORLD));
   const std::string text =
       message_of<FileError>([&] { check_common_place((apart ? own : common) / "a.h5", MPI_COMM_WORLD); });
-  CHECK_THAT(text, Contains("a.h5: ranks on " + host_name() + " do not find there"));
+  CHECK_THAT(text, ContainsSubstring("a.h5: ranks on " + host_name() + " do not find there"));
   MPI_Barrier(MPI_COMM_WORLD);
   CHECK(entries(common) == 0);
 }
@@ -95,8 +95,9 @@ TEST_CASE("where no file can be created, ranks look for the file to resume") {
   MPI_Barrier(MPI_COMM_WORLD);
   CHECK_NOTHROW(check_common_place(name, MPI_COMM_WORLD));
   const fs::path path = own_rank() == 0 ? fs::path(name) : "elsewhere" / fs::path(name);
-  CHECK_THAT(message_of<FileError>([&] { check_common_place(path, MPI_COMM_WORLD); }), Contains("do not find there"));
+  CHECK_THAT(message_of<FileError>([&] { check_common_place(path, MPI_COMM_WORLD); }),
+             ContainsSubstring("do not find there"));
   MPI_Barrier(MPI_COMM_WORLD);
   CHECK_THAT(message_of<FileError>([&] { check_common_place(std::string(230, 'y'), MPI_COMM_WORLD); }),
-             Contains("cannot be created"));
+             ContainsSubstring("cannot be created"));
 }

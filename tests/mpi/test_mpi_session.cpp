@@ -1,7 +1,7 @@
 // Collective set-up: after an error on one rank, all ranks report the same text. Runs on several numbers of ranks.
-#include <catch2/catch.hpp>
 
 #include "runner/mpi/mpi_session.hpp"
+#include "tests/catch.hpp"
 #include "tests/mpi/world.hpp"
 
 using namespace rodsweep;

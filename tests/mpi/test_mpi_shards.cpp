@@ -1,7 +1,7 @@
 // Shards on 1, 2 and 4 ranks: every rank gets all shards in order, whichever rank computes them.
-#include <catch2/catch.hpp>
 
 #include "runner/training/shard_exchange.hpp"
+#include "tests/catch.hpp"
 
 namespace rodsweep {
 namespace test_mpi_shards {

@@ -1,11 +1,11 @@
 // Gradients against central differences, in double precision.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <functional>
 #include <vector>
 
 #include "network/layers/tensor.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test {

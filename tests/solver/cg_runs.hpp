@@ -1,12 +1,12 @@
 // Systems for tests of CG, and a solve with its report, solution and history.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/factor/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test {

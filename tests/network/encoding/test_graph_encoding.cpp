@@ -1,9 +1,9 @@
 // Features of nodes and edges: values computed by hand, and the features that move with the rod.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "network/encoding/graph_encoding.hpp"
 #include "solver/scene/scene_parts.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_graph_encoding {

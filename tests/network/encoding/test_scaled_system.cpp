@@ -1,9 +1,9 @@
 // The features and training data of a linear system, and the loss of a correction against dense algebra.
-#include <catch2/catch.hpp>
 #include <numeric>
 
 #include "network/encoding/system_encoding.hpp"
 #include "network/training/energy_loss.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/gradient_check.hpp"
 
 namespace rodsweep::test_scaled_system {

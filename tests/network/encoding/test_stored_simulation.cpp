@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 
 #include "network/encoding/stored_simulation.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 using namespace rodsweep;
@@ -34,5 +34,6 @@ TEST_CASE("a system is not put into a rod of another size") {
   system.position.resize(3);
   system.lambda.resize(12);
   Rod rod = test::random_rod(test::chain(4), {}, 1);
-  CHECK_THROWS_WITH(restore(system, rod), Catch::Contains("3 segments and 2 joints") && Catch::Contains("4 and 3"));
+  CHECK_THROWS_WITH(restore(system, rod), Catch::Matchers::ContainsSubstring("3 segments and 2 joints") &&
+                                              Catch::Matchers::ContainsSubstring("4 and 3"));
 }

@@ -1,8 +1,8 @@
 // The encoding `linear_system` is invariant when a scene turns or is mirrored, or when its frames roll.
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "network/guess/coping_net_guess.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/models.hpp"
 #include "tests/solver/turned.hpp"
 

@@ -1,9 +1,9 @@
 // Rods as graphs and joints as a forest: parents, depths, cut loops; single and side by side.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "network/graph/joint_forest.hpp"
 #include "network/graph/rod_graph.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_joint_forest {

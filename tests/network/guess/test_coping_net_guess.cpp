@@ -1,11 +1,11 @@
 // COPINGNet as an initial guess in moving simulations: its guarantees and its cost.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "network/guess/base_guess.hpp"
 #include "network/guess/coping_net_guess.hpp"
 #include "solver/factor/block_factor.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/models.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
@@ -178,7 +178,7 @@ TEST_CASE("corrections with factors are steps of conjugate gradients: each lower
   settings.processor = Processor::message_passing;
   VectorX x0(exact.size());
   CHECK_THROWS_WITH(CopingNetGuess(test::random_model(settings), scene, 1, {2}).propose(system, {}, x0),
-                    Catch::Contains("lag_steps"));
+                    Catch::Matchers::ContainsSubstring("lag_steps"));
 }
 
 TEST_CASE("the joints' order does not matter") {

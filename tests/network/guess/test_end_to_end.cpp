@@ -1,11 +1,11 @@
 // A network instead of the solve: the increments that are applied, the segments that they move, refusals.
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "network/guess/coping_net_guess.hpp"
 #include "network/guess/end_to_end.hpp"
 #include "solver/step/observables.hpp"
 #include "solver/step/time_step.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/models.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"

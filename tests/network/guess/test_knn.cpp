@@ -1,7 +1,7 @@
 // Nearest neighbours: the neighbours found, the interpolation of their solutions, the cost.
-#include <catch2/catch.hpp>
 
 #include "network/guess/knn_guess.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/stored.hpp"
 #include "tests/solver/support.hpp"
 

@@ -1,10 +1,10 @@
 // The learned guess allocates nothing after a rod's first solves: not in base guess, features or layers.
-#include <catch2/catch.hpp>
 
 #include "network/guess/coping_net_guess.hpp"
 #include "network/guess/end_to_end.hpp"
 #include "network/guess/knn_guess.hpp"
 #include "network/guess/state_network.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/models.hpp"
 #include "tests/network/stored.hpp"
 #include "tests/solver/allocations.hpp"

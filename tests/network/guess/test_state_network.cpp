@@ -1,10 +1,10 @@
 // A simulator that updates states: its history, its features of turned scenes, the effect of its output on rods.
-#include <catch2/catch.hpp>
 
 #include "network/guess/state_network.hpp"
 #include "network/training/example_builder.hpp"
 #include "network/training/trainer.hpp"
 #include "solver/step/time_step.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/models.hpp"
 #include "tests/network/stored.hpp"
 #include "tests/solver/turned.hpp"

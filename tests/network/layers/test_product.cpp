@@ -1,9 +1,9 @@
 // The product of narrow layers against Eigen's, for all tile shapes; backward passes against central differences.
-#include <catch2/catch.hpp>
 
 #include "network/layers/mlp.hpp"
 #include "network/layers/narrow_product.hpp"
 #include "network/layers/product.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/gradient_check.hpp"
 
 namespace rodsweep::test_product {
@@ -59,7 +59,7 @@ TEST_CASE("a product of narrow operands is that of the rounded ones, however man
         CHECK((y.colwise() + bias - exact).cwiseAbs().maxCoeff() <
               (narrow_bits == 16 ? 8e-3F : 2e-6F) * std::sqrt(depth));
       }
-  CHECK_THROWS_WITH(NarrowMatrix(Tensor<float>::Zero(6, 4)), Catch::Contains("6 rows"));
+  CHECK_THROWS_WITH(NarrowMatrix(Tensor<float>::Zero(6, 4)), Catch::Matchers::ContainsSubstring("6 rows"));
 }
 
 TEST_CASE("the gradients of an MLP are those of central differences, for weights and inputs") {

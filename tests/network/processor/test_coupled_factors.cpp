@@ -1,6 +1,5 @@
 // Factors of all couplings: gradients, the properties that they share with A^-1, incomplete Cholesky as a special case,
 // inference.
-#include <catch2/catch.hpp>
 
 #include <Eigen/Dense>
 #include <map>
@@ -10,6 +9,7 @@
 #include "network/training/correction_loss.hpp"
 #include "network/training/example.hpp"
 #include "solver/scene/scenes.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/gradient_check.hpp"
 #include "tests/solver/support.hpp"
 
@@ -239,7 +239,7 @@ TEST_CASE("inference of factors of all couplings gives the training code's answe
 TEST_CASE("a latent size without a kernel for factors of all couplings is refused") {
   const Net<float> net(24);
   const SystemPattern pattern;
-  CHECK_THROWS_WITH(CoupledInference(net.factors, net.weights, pattern), Catch::Contains("24"));
+  CHECK_THROWS_WITH(CoupledInference(net.factors, net.weights, pattern), Catch::Matchers::ContainsSubstring("24"));
 }
 
 }  // namespace rodsweep::test_coupled_factors

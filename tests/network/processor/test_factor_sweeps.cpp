@@ -1,9 +1,9 @@
 // Learned factors: gradients, the properties that they share with A^-1, inference.
 #include <Eigen/Eigenvalues>
-#include <catch2/catch.hpp>
 
 #include "network/encoding/feature_encoder.hpp"
 #include "network/processor/factor_inference.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/gradient_check.hpp"
 #include "tests/solver/support.hpp"
 
@@ -190,7 +190,8 @@ TEST_CASE("a latent size without a kernel for factors is refused") {
   const Net<float> net(24);
   const JointForest forest = some_forest();
   const SystemPattern pattern;
-  CHECK_THROWS_WITH(FactorInference(net.sweeps, net.weights, forest, pattern), Catch::Contains("24"));
+  CHECK_THROWS_WITH(FactorInference(net.sweeps, net.weights, forest, pattern),
+                    Catch::Matchers::ContainsSubstring("24"));
 }
 
 }  // namespace rodsweep::test_factor_sweeps

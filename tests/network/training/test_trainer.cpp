@@ -1,10 +1,10 @@
 // Training reduces the loss, and its bits depend on its settings only; Adam against its definition.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "network/training/adam.hpp"
 #include "network/training/threads.hpp"
 #include "network/training/trainer.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/models.hpp"
 #include "tests/network/stored.hpp"
 
@@ -239,11 +239,12 @@ TEST_CASE("settings that make no sense are refused") {
   CopingNet<float> net(small_network(), 1);
   TrainingSettings settings = small_training();
   settings.shards = 3;
-  CHECK_THROWS_WITH(Trainer(net, data.examples, settings), Catch::Contains("8") && Catch::Contains("3 equal shards"));
+  CHECK_THROWS_WITH(Trainer(net, data.examples, settings),
+                    Catch::Matchers::ContainsSubstring("8") && Catch::Matchers::ContainsSubstring("3 equal shards"));
   settings.shards = 4;
   settings.batch = 12;
-  CHECK_THROWS_WITH(Trainer(net, data.examples, settings),
-                    Catch::Contains("8 examples") && Catch::Contains("batch of 12"));
+  CHECK_THROWS_WITH(Trainer(net, data.examples, settings), Catch::Matchers::ContainsSubstring("8 examples") &&
+                                                               Catch::Matchers::ContainsSubstring("batch of 12"));
 }
 
 TEST_CASE("two steps follow the definition") {

@@ -1,7 +1,7 @@
 // Copies of examples, turned about gravity and shifted: the features that change and those that do not.
-#include <catch2/catch.hpp>
 
 #include "network/training/turn.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/stored.hpp"
 
 namespace rodsweep::test_turned_copies {

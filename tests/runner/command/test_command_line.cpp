@@ -2,16 +2,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 
 #include "runner/command/command_line.hpp"
 #include "runner/command/run_command.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace test_command_line {
 
@@ -107,7 +107,7 @@ TEST_CASE("mistakes on the command line are answered with exit code 2 and what i
   for (const auto& [words, says] : mistakes) {
     CAPTURE(words);
     CHECK(answer(words).code == ExitCode::user_error);
-    CHECK_THAT(answer(words).text, Contains(says));
+    CHECK_THAT(answer(words).text, ContainsSubstring(says));
   }
 }
 

@@ -1,7 +1,7 @@
 // Core-hours estimated by probes with a known evaluation time.
-#include <catch2/catch.hpp>
 
 #include "runner/command/plan_estimate.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;

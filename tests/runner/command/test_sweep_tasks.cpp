@@ -1,8 +1,8 @@
 // Which tasks a run has to do: each filter over the list of tasks.
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "runner/command/sweep_opening.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;

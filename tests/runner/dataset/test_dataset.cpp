@@ -1,17 +1,17 @@
 // Data sets: the systems of a record and of a file, of which A and b are assembled again; refused files.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/dataset/stored_systems.hpp"
 #include "solver/step/time_step.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {
 namespace test_dataset {
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
 namespace fs = std::filesystem;
 
@@ -183,7 +183,7 @@ TEST_CASE("failed simulations are left out with a note") {
   CHECK(data.note() == "1 of 3 simulations of " + (folder / "a.h5").native() +
                            " failed and are left out (the first: task 2, diverged: step 2: too bad)");
   make_data_set(folder / "none.h5", ragged_job(), 0);
-  CHECK_THAT(refusal_of(folder / "none.h5"), Contains("holds no usable simulation: all 3 failed"));
+  CHECK_THAT(refusal_of(folder / "none.h5"), ContainsSubstring("holds no usable simulation: all 3 failed"));
 }
 
 TEST_CASE("the hash is that of the data: the same for the same job and in a compressed copy, another for another") {
@@ -217,7 +217,7 @@ TEST_CASE("what is no finished data set is refused with what to do") {
 
   make_data_set(folder / "part.h5", ragged_job(), 1, true);
   CHECK_THAT(refusal_of(folder / "part.h5"),
-             Contains("is not complete: 2 of 3 simulations are missing; finish it with: rodsweep run ") &&
+             ContainsSubstring("is not complete: 2 of 3 simulations are missing; finish it with: rodsweep run ") &&
                  EndsWith("-o " + (folder / "part.h5").native() + " --resume"));
 }
 
@@ -233,7 +233,7 @@ TEST_CASE("a damaged simulation is refused, the others are read") {
   }
   const DatasetReader data(path);
   CHECK(data.read(0).systems.size() == 4);
-  CHECK_THAT(message_of<FileError>([&] { data.read(1); }), Contains("is damaged: wrong checksum of task 1"));
+  CHECK_THAT(message_of<FileError>([&] { data.read(1); }), ContainsSubstring("is damaged: wrong checksum of task 1"));
 }
 
 TaskRecord evaluated(const Plan& plan) {

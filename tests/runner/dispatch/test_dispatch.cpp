@@ -1,11 +1,11 @@
 // The master and its workers over a network in memory.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <map>
 #include <memory>
 #include <random>
 
+#include "tests/catch.hpp"
 #include "tests/runner/dispatch_examples.hpp"
 
 using namespace rodsweep;

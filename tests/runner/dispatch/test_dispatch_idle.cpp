@@ -1,11 +1,11 @@
 // Second tasks held by workers, and idle time at the end of a sweep. Time is simulated, workers take given times, and
 // costs are estimates.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
 #include <random>
 
+#include "tests/catch.hpp"
 #include "tests/runner/dispatch_examples.hpp"
 
 using namespace rodsweep;

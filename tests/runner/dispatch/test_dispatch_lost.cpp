@@ -1,11 +1,11 @@
 // Workers that time out: their tasks are reassigned, and the master never waits for them.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
 #include <string>
 #include <utility>
 
+#include "tests/catch.hpp"
 #include "tests/runner/dispatch_examples.hpp"
 
 using namespace rodsweep;

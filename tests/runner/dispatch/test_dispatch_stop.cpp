@@ -2,13 +2,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
 #include <optional>
 
 #include "runner/dispatch/stop_signal.hpp"
 #include "solver/plugin/user_call.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/dispatch_examples.hpp"
 
 using namespace rodsweep;

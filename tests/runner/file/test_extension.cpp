@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 
 #include "runner/file/extension.hpp"
 #include "runner/plan/job_extension.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;

@@ -2,7 +2,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "runner/file/columns.hpp"
@@ -12,6 +11,7 @@
 #include "runner/file/record.hpp"
 #include "runner/text/checksum.hpp"
 #include "solver/linear/interruption.hpp"
+#include "tests/catch.hpp"
 #include "tests/hand_clock.hpp"
 #include "tests/runner/file_examples.hpp"
 
@@ -168,7 +168,7 @@ TEST_CASE("every dataset says its unit and meaning") {
   std::vector<std::string> datasets;
   H5Ovisit2(
       read.id(), H5_INDEX_NAME, H5_ITER_NATIVE,
-      [](hid_t, const char* name, const H5O_info_t* info, void* names) -> herr_t {
+      [](hid_t, const char* name, const auto* info, void* names) -> herr_t {
         if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(names)->push_back(name);
         return 0;
       },

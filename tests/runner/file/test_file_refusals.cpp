@@ -1,7 +1,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -10,10 +9,11 @@
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/stored_plan.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
 using Catch::Matchers::StartsWith;
 
@@ -48,7 +48,7 @@ TEST_CASE("a file that exists is refused, untouched, with the two ways on") {
   CHECK(bytes_of(path) == "precious");
   CHECK(entries(folder.path()) == 1);
   fs::create_symlink(folder / "nowhere", folder / "dangling.h5");
-  CHECK_THAT(creation_refusal(folder / "dangling.h5", plan_of(full_job())), Contains("exists already"));
+  CHECK_THAT(creation_refusal(folder / "dangling.h5", plan_of(full_job())), ContainsSubstring("exists already"));
 }
 
 TEST_CASE("a file that appears while ours is being made is not replaced") {
@@ -58,7 +58,7 @@ TEST_CASE("a file that appears while ours is being made is not replaced") {
     std::ofstream(path) << "another's";
     return free_bytes(where);
   });
-  CHECK_THAT(text, Contains("exists already and is never overwritten"));
+  CHECK_THAT(text, ContainsSubstring("exists already and is never overwritten"));
   CHECK(bytes_of(path) == "another's");
   CHECK(entries(folder.path()) == 1);
 }
@@ -68,8 +68,8 @@ TEST_CASE("a disk that is too full is refused before anything is created") {
   const std::string text =
       creation_refusal(folder / "a.h5", plan_of(full_job()), [](const fs::path&) { return std::uintmax_t{12345}; });
   CHECK_THAT(text, StartsWith((folder / "a.h5").native() + " needs ") &&
-                       Contains("kB, but only 12.3 kB are free in " + folder.path().native()) && Contains("-o FILE") &&
-                       Contains("record.solves"));
+                       ContainsSubstring("kB, but only 12.3 kB are free in " + folder.path().native()) &&
+                       ContainsSubstring("-o FILE") && ContainsSubstring("record.solves"));
   CHECK(entries(folder.path()) == 0);
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("a folder that cannot be made or written is refused") {
   const TemporaryFolder folder;
   std::ofstream(folder / "file") << "x";
   CHECK_THAT(creation_refusal(folder / "file/a.h5", plan_of(full_job())),
-             Contains("file/a.h5 cannot be created") && Contains("Not a directory"));
+             ContainsSubstring("file/a.h5 cannot be created") && ContainsSubstring("Not a directory"));
   CHECK(creation_refusal(folder / "new/folder/a.h5", plan_of(full_job())) == "");
   CHECK(fs::exists(folder / "new/folder/a.h5"));
 }
@@ -85,11 +85,11 @@ TEST_CASE("a folder that cannot be made or written is refused") {
 TEST_CASE("a path that the system or MPI-IO cannot take is refused with the reason") {
   const TemporaryFolder folder;
   CHECK_THAT(creation_refusal(folder / (std::string(300, 'a') + ".h5"), plan_of(full_job())),
-             Contains("must be at most 230") && Contains("-o FILE"));
+             ContainsSubstring("must be at most 230") && ContainsSubstring("-o FILE"));
   const fs::path longest = folder / (std::string(200 - folder.path().native().size(), 'b') + "/" + "c/d/e/f/g/h.h5");
   CHECK(creation_refusal(longest, plan_of(full_job())) == "");
   CHECK(fs::exists(longest));
-  CHECK_THAT(resume_refusal(folder / std::string(231, 'a'), plan_of(full_job())), Contains("at most 230"));
+  CHECK_THAT(resume_refusal(folder / std::string(231, 'a'), plan_of(full_job())), ContainsSubstring("at most 230"));
   std::error_code error;
   fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec, error);
   if (geteuid() != 0) {  // root can write anywhere
@@ -151,19 +151,20 @@ TEST_CASE("a damaged results file, or one of another program, is refused with wh
   for (const Damage& damage : damages) {
     const FullFile made(3);
     damage.change(hdf5::open_file(made.path, H5F_ACC_RDWR).id());
-    CHECK_THAT(damage.refusal(made.path, made.plan), StartsWith(made.path.native()) && Contains(damage.says));
+    CHECK_THAT(damage.refusal(made.path, made.plan), StartsWith(made.path.native()) && ContainsSubstring(damage.says));
   }
   const FullFile cut(2);
   fs::resize_file(cut.path, fs::file_size(cut.path) / 2);
-  CHECK_THAT(inspect_refusal(cut.path), Contains("a.h5 is damaged or incomplete") && Contains("truncated file"));
-  CHECK_THAT(resume_refusal(cut.path, cut.plan), Contains("a.h5 is damaged or incomplete"));
+  CHECK_THAT(inspect_refusal(cut.path),
+             ContainsSubstring("a.h5 is damaged or incomplete") && ContainsSubstring("truncated file"));
+  CHECK_THAT(resume_refusal(cut.path, cut.plan), ContainsSubstring("a.h5 is damaged or incomplete"));
 }
 
 TEST_CASE("a task whose state byte is damaged is run again") {
   const FullFile made(2);
   hdf5::RowDataset(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/state").put<std::uint8_t>(4, 7);
   const auto file = ResultsFile::resume(made.path, made.plan, test_provenance(), MPI_COMM_SELF);
-  CHECK_THAT(file.value().note(), Contains("task 4 is run again"));
+  CHECK_THAT(file.value().note(), ContainsSubstring("task 4 is run again"));
   CHECK(file.value().done().at(4) == 0);
   CHECK(inspect(made.path).pending >= 1);
 }
@@ -175,13 +176,13 @@ TEST_CASE("resume with another job is refused with the key that differs, and whi
   const auto refused = [&](const char* pointer, const char* value) {
     return resume_refusal(folder / "a.h5", plan_of(with(pointer, value, job)));
   };
-  CHECK_THAT(refused("/seed", "4"), Contains("a.h5 holds the results of another job than job.json") &&
-                                        Contains("seed was 3 and is 4") && Contains("rodsweep info FILE --job") &&
-                                        Contains("-o FILE"));
-  CHECK_THAT(refused("/samples", "3"), Contains("samples was") && Contains("--extend"));
-  CHECK_THAT(refused("/task_time_limit_s", "100"), Contains("--task-time-limit"));
+  CHECK_THAT(refused("/seed", "4"), ContainsSubstring("a.h5 holds the results of another job than job.json") &&
+                                        ContainsSubstring("seed was 3 and is 4") &&
+                                        ContainsSubstring("rodsweep info FILE --job") && ContainsSubstring("-o FILE"));
+  CHECK_THAT(refused("/samples", "3"), ContainsSubstring("samples was") && ContainsSubstring("--extend"));
+  CHECK_THAT(refused("/task_time_limit_s", "100"), ContainsSubstring("--task-time-limit"));
   CHECK_THAT(refused("/time/steps", "4"),
-             Contains("time.steps was") && Contains("A task cannot go on beyond its last step"));
+             ContainsSubstring("time.steps was") && ContainsSubstring("A task cannot go on beyond its last step"));
 }
 
 TEST_CASE("the same job written in another way is continued: order of keys, form of numbers, name, description") {
@@ -208,11 +209,11 @@ TEST_CASE("resume with a program that expands the job differently is refused wit
     const std::string own = source_revision();
     const bool is_known = own != "unknown" && own.find("-dirty") == std::string::npos;
     CHECK_THAT(resume_refusal(made.path, made.plan),
-               Contains("scene.length_m of task 4 is") &&
-                   Contains(is_known ? "the revision is the same" : "expands the job differently"));
+               ContainsSubstring("scene.length_m of task 4 is") &&
+                   ContainsSubstring(is_known ? "the revision is the same" : "expands the job differently"));
     hdf5::write_text_row(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/revision", 0, "0123456789ab");
     CHECK_THAT(resume_refusal(made.path, made.plan),
-               Contains("expands the job differently (revision 0123456789ab): scene.length_m of task 4 is"));
+               ContainsSubstring("expands the job differently (revision 0123456789ab): scene.length_m of task 4 is"));
   }
   SECTION("last digits of a parameter do not matter") {
     lengths[4] *= 1 + 1e-14;
@@ -221,7 +222,7 @@ TEST_CASE("resume with a program that expands the job differently is refused wit
   }
   SECTION("another list of tasks") {
     set_attribute(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/job", "plan_hash", "0123456789abcdef");
-    CHECK_THAT(resume_refusal(made.path, made.plan), Contains("/job, plan_hash"));
+    CHECK_THAT(resume_refusal(made.path, made.plan), ContainsSubstring("/job, plan_hash"));
   }
 }
 
@@ -231,7 +232,7 @@ TEST_CASE("the file of one task run again is not continued") {
   make_file(folder / "one.h5", plan.alone(3, 1), 1);
   CHECK(inspect(folder / "one.h5").rerun_of_task == 3);
   CHECK_THAT(resume_refusal(folder / "one.h5", plan),
-             Contains("holds only one task of a sweep, from `rodsweep rerun`"));
+             ContainsSubstring("holds only one task of a sweep, from `rodsweep rerun`"));
 }
 
 TEST_CASE("a sweep does not go on with another file under a name in its job") {
@@ -244,7 +245,7 @@ TEST_CASE("a sweep does not go on with another file under a name in its job") {
   make_file(folder / "a.h5", plan(), 3);
   CHECK(resume_refusal(folder / "a.h5", plan()) == "");
   std::ofstream(folder / "data.h5") << "other systems";
-  CHECK_THAT(resume_refusal(folder / "a.h5", plan()), Contains("input files of the job have changed"));
+  CHECK_THAT(resume_refusal(folder / "a.h5", plan()), ContainsSubstring("input files of the job have changed"));
 }
 
 }  // namespace test_file_refusals

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 
@@ -6,10 +5,11 @@
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/runs.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace test_file_resume {
 
@@ -73,7 +73,7 @@ TEST_CASE("a file that a run writes is refused to another, until that ends") {
   {
     const ResultsFile first = ResultsFile::create(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
     CHECK_THAT(message_of<FileError>([&] { resume(folder / "a.h5", plan); }),
-               Contains("a.h5 is being written by another run"));
+               ContainsSubstring("a.h5 is being written by another run"));
     CHECK(inspect(folder / "a.h5").runs.size() == 1);
   }
   ResultsFile second = resume(folder / "a.h5", plan);
@@ -87,7 +87,7 @@ TEST_CASE("a complete task is never written again") {
   const auto before = reproducible_bytes(made.path, made.plan);
   ResultsFile file = resume(made.path, made.plan);
   CHECK_THAT(message_of<std::logic_error>([&] { file.write(made.plan.task(1), synthetic_record(made.plan, 0)); }),
-             Contains("task 1 is complete") && Contains("must not be written again"));
+             ContainsSubstring("task 1 is complete") && ContainsSubstring("must not be written again"));
   const bool untouched = reproducible_bytes(made.path, made.plan) == before;
   CHECK(untouched);
 }
@@ -123,7 +123,7 @@ TEST_CASE("a sweep can be resumed more often than /runs has rows, and says so") 
                   std::vector<std::string>(run_rows, "2025-01-01T00:00:00Z"));
   ResultsFile file = resume(made.path, made.plan);
   CHECK(file.run_index() == run_rows - 1);
-  CHECK_THAT(file.note(), Contains("has 64 rows") && Contains("/runs"));
+  CHECK_THAT(file.note(), ContainsSubstring("has 64 rows") && ContainsSubstring("/runs"));
   const FileSummary summary = inspect(made.path);
   CHECK(summary.runs.size() == run_rows);
   CHECK(summary.runs.back().provenance.begin_utc != "2025-01-01T00:00:00Z");
@@ -194,7 +194,8 @@ TEST_CASE("runs with time to verify a part verify all in the end") {
     const ResultsFile file =
         ResultsFile::resume(made.path, made.plan, test_provenance(), MPI_COMM_SELF, Retry::none, two).value();
     CHECK(asked == 3);
-    CHECK_THAT(file.note(), Contains("time was left to verify 2 of 6 finished tasks; later runs verify others"));
+    CHECK_THAT(file.note(),
+               ContainsSubstring("time was left to verify 2 of 6 finished tasks; later runs verify others"));
     found = file.done()[1] == 0;
     CHECK((file.note().find("task 1 is run again") != std::string::npos) == found);
   }
@@ -301,7 +302,7 @@ TEST_CASE("provenance tells when, where and with what") {
   CHECK_FALSE(here.host.empty());
   CHECK_FALSE(here.revision.empty());
   for (const char* part : {"rodsweep ", "MPI", "PETSc 3.", "HDF5 1.", "Eigen 3.", "++ ", "AVX"}) {
-    CHECK_THAT(here.versions, Contains(part));
+    CHECK_THAT(here.versions, ContainsSubstring(part));
   }
 }
 

@@ -1,17 +1,17 @@
 // Files of curves: what is read from each format, what is refused with its line or key, and the rods that jobs make of them.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "runner/inputs/curve_file.hpp"
 #include "runner/measure/plan_check.hpp"
 #include "runner/plan/plan.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/job_folder.hpp"
 
 namespace rodsweep::test_curve_file {
 
-using Catch::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Points = std::vector<Vector3>;
 
 TEST_CASE("tables: columns, headers, comments, blank lines") {
@@ -29,7 +29,7 @@ TEST_CASE("tables: columns, headers, comments, blank lines") {
   CHECK_THROWS_WITH(parse_curves("0 0 0\n1 0 0 1\n", "a.csv"),
                     "a.csv:2: 4 values; must be 3, as in the curve's first line");
   CHECK_THROWS_WITH(parse_curves("0 0 nan\n", "a.csv"), "a.csv:1: z is \"nan\"; must be a finite number");
-  CHECK_THROWS_WITH(parse_curves("0 a 0\n", "a.csv"), Contains("a.csv:1: y is \"a\""));
+  CHECK_THROWS_WITH(parse_curves("0 a 0\n", "a.csv"), ContainsSubstring("a.csv:1: y is \"a\""));
   CHECK_THROWS_WITH(parse_curves("\n\n", "a.csv"), "a.csv: has no curve");
 }
 
@@ -44,7 +44,7 @@ TEST_CASE("tables: the names in a header decide, and an index without a name is 
   }
   CHECK(parse_curves("x,y,z\n0,0,0\n1,0,0\n,,\n0,1,0\n1,1,0\n", "a.csv").size() == 2);  // as spreadsheets write
   const auto refused = [](const char* text, const char* words) {
-    CHECK_THROWS_WITH(parse_curves(text, "a.csv"), Contains(words));
+    CHECK_THROWS_WITH(parse_curves(text, "a.csv"), ContainsSubstring(words));
   };
   refused("x,y,z,diameter\n", "a.csv:1: column 4 is \"diameter\"; must be one of x, y, z and radius, each once");
   refused("x,y,,z\n", "a.csv:1: column 3 is \"\"");
@@ -70,7 +70,7 @@ TEST_CASE("JSON: radii, names and materials of each curve") {
   CHECK(curves[1].youngs_modulus_pa == 2e5);
   CHECK(curves[1].torsion_modulus_pa == 1e5);
   const auto refused = [](const char* text, const char* words) {
-    CHECK_THROWS_WITH(parse_curves(text, "a.json"), Contains(words));
+    CHECK_THROWS_WITH(parse_curves(text, "a.json"), ContainsSubstring(words));
   };
   refused(R"({"lines": []})", "a.json: curves: missing");
   refused(R"({"curves": [{"radius": 1}]})", "a.json: curves[0].points: missing");
@@ -98,8 +98,8 @@ TEST_CASE("OBJ: lines between vertices, also counted from the end") {
 }
 
 TEST_CASE("another ending is refused, for SWC with the scene that reads it") {
-  CHECK_THROWS_WITH(parse_curves("", "a.stl"), Contains("a.stl: the name ends in \".stl\"; must be .csv"));
-  CHECK_THROWS_WITH(parse_curves("", "a.swc"), Contains("the scene \"skeleton\" reads .swc"));
+  CHECK_THROWS_WITH(parse_curves("", "a.stl"), ContainsSubstring("a.stl: the name ends in \".stl\"; must be .csv"));
+  CHECK_THROWS_WITH(parse_curves("", "a.swc"), ContainsSubstring("the scene \"skeleton\" reads .swc"));
 }
 
 Json curves_job(const std::string& more = "") {
@@ -128,10 +128,10 @@ TEST_CASE("mistakes in a file of curves, or in what is held, are told with file 
   const JobFolder folder;
   folder.write("bow.csv", "0 0 0\n1 0\n");
   CHECK_THAT(refusal_in(folder, curves_job()),
-             Contains("scene.curves: ") && Contains("bow.csv:2: 2 values; must be x y z"));
+             ContainsSubstring("scene.curves: ") && ContainsSubstring("bow.csv:2: 2 values; must be x y z"));
   folder.write("bow.csv", "0 0 0\n1 0 0\n");
   CHECK_THAT(refusal_in(folder, curves_job(R"(, "held_at_m": [[0, 1, 0]])")),
-             Contains("scene: held_at_m has [0, 1, 0], which is no point of a curve"));
+             ContainsSubstring("scene: held_at_m has [0, 1, 0], which is no point of a curve"));
 }
 
 TEST_CASE("how far points move to meet within join_m is told") {
@@ -144,7 +144,8 @@ TEST_CASE("how far points move to meet within join_m is told") {
   CHECK(warnings(R"(, "join_m": 0.001)").empty());
   const auto joined = warnings(R"(, "join_m": {"grid": [0, 0.02]})");
   REQUIRE(joined.size() == 1);
-  CHECK_THAT(joined[0], Contains("scene.join_m.grid[1]: points of bow.csv move by up to 0.005 m to where they meet"));
+  CHECK_THAT(joined[0],
+             ContainsSubstring("scene.join_m.grid[1]: points of bow.csv move by up to 0.005 m to where they meet"));
 }
 
 TEST_CASE("a star of very many curves from a free point is refused before its matrix is built") {
@@ -154,8 +155,8 @@ TEST_CASE("a star of very many curves from a free point is refused before its ma
   folder.write("bow.csv", star.c_str());
   const Json job = with("/solve", R"({"method": "direct"})", without("/guesses", curves_job()));
   CHECK_THAT(message_of<JobError>([&] { check_factors(Plan(folder.job(job))); }),
-             Contains("scene: task 0: 5999 joints on one segment need 9.65 GiB") &&
-                 Contains("must be at most 4 GiB: hold the point where they meet"));
+             ContainsSubstring("scene: task 0: 5999 joints on one segment need 9.65 GiB") &&
+                 ContainsSubstring("must be at most 4 GiB: hold the point where they meet"));
   const Json held = with("/scene/held_at_m", "[[0, 0, 0]]", job);
   CHECK_NOTHROW(check_factors(Plan(folder.job(held))));
 }

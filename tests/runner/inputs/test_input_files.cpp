@@ -1,6 +1,6 @@
 // Files that a job names: paths relative to the job, refusals, effect on a task's identity.
-#include <catch2/catch.hpp>
 
+#include "tests/catch.hpp"
 #include "tests/runner/job_folder.hpp"
 
 namespace rodsweep {
@@ -20,17 +20,18 @@ TEST_CASE("a file that cannot be read is refused with key, path and reason") {
             " was not found; the path is relative to the job file's folder");
   folder.write("models/bending.h5", "weights");
   CHECK_THAT(folder.refusal(learned("models/bendin.h5")),
-             Catch::EndsWith("folder; did you mean \"models/bending.h5\"?"));
-  CHECK_THAT(folder.refusal(learned("nowhere/bending.h5")), Catch::EndsWith("the job file's folder"));
-  CHECK_THAT(folder.refusal(learned("models")), Catch::Contains("is a folder"));
-  CHECK_THAT(folder.refusal(learned("")), Catch::Contains("must be the path of a file"));
+             Catch::Matchers::EndsWith("folder; did you mean \"models/bending.h5\"?"));
+  CHECK_THAT(folder.refusal(learned("nowhere/bending.h5")), Catch::Matchers::EndsWith("the job file's folder"));
+  CHECK_THAT(folder.refusal(learned("models")), Catch::Matchers::ContainsSubstring("is a folder"));
+  CHECK_THAT(folder.refusal(learned("")), Catch::Matchers::ContainsSubstring("must be the path of a file"));
 }
 
 TEST_CASE("a file that is missing may come from a job beside, and may be missing in a job that is only looked at") {
   const JobFolder folder;
   folder.write("data.json", "{}");
-  CHECK_THAT(folder.refusal(learned("../results/data.h5")),
-             Catch::EndsWith("; if " + (folder.path() / "data.json").native() + " makes it, run that job first"));
+  CHECK_THAT(
+      folder.refusal(learned("../results/data.h5")),
+      Catch::Matchers::EndsWith("; if " + (folder.path() / "data.json").native() + " makes it, run that job first"));
   const Job job = parse_job(learned("none.h5").dump(), folder.path() / "job.json", MissingFiles::accepted);
   CHECK(job.files.at("none.h5").hash.empty());
   REQUIRE(missing_files(job).size() == 1);

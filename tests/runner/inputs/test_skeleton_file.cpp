@@ -1,8 +1,8 @@
 // Files of skeletons in SWC: what is read, assumed and refused, and the trees that jobs make of them.
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "runner/inputs/skeleton_file.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/job_folder.hpp"
 
 namespace rodsweep {
@@ -122,7 +122,7 @@ TEST_CASE("what is assumed of a skeleton is said") {
   folder.write("plum.swc", "1 0 0 0 0 5 -1\n2 0 0 3 0 0 1\n3 0 9 0 0 5 -1\n4 0 9 4 0 5 3\n5 0 9 8 0 5 4\n");
   const Job job = folder.job(skeleton_job());
   REQUIRE_FALSE(job.warnings.empty());
-  CHECK_THAT(job.warnings.back(), Catch::Matchers::Contains("plum.swc:2: a radius of 0"));
+  CHECK_THAT(job.warnings.back(), Catch::Matchers::ContainsSubstring("plum.swc:2: a radius of 0"));
   const Plan plan(job);
   CHECK(plan.task(0).segments == 5);  // two rods
   CHECK(plan.task(0).joints == 3);

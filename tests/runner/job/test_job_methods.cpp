@@ -1,6 +1,6 @@
 // The methods that advance rods, and data sets: what their tasks have. tests/laws/every_preconditioner.cpp runs them.
-#include <catch2/catch.hpp>
 
+#include "tests/catch.hpp"
 #include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {

@@ -1,12 +1,12 @@
 // Refused jobs: one table for what concerns several values or what a message advises. tests/laws/every_refusal.cpp has each
 // key with values that its row does not allow, under wrong names, in other kinds of objects, and left out.
-#include <catch2/catch.hpp>
 
 #include "runner/text/words.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::StartsWith;
 
 namespace test_job_refusals {
@@ -226,7 +226,7 @@ TEST_CASE("the jobs of the table are refused with file, path, value and what is 
     const std::vector<std::string> parts = split(row, " | ");
     const std::size_t colon = parts[0].find(": ");
     const std::string said = refusal(changed(bases.at(row.substr(0, colon)), parts[0].substr(colon + 2)));
-    CHECK_THAT(said, Contains("job.json: " + parts.at(1)));
+    CHECK_THAT(said, ContainsSubstring("job.json: " + parts.at(1)));
     for (const std::string& part : parts) CHECK((&part == &parts[0] || said.find(part) != std::string::npos));
   }
 }
@@ -276,7 +276,7 @@ TEST_CASE("text that is not JSON is refused with line, column, what to do and a 
       {"[1, 2", "line 1, column 6: the list before this is not closed: ] is missing"},
   };
   for (const auto& [text, says] : refused)
-    CHECK_THAT(refusal_of_text(text), StartsWith("job.json: ") && Contains(says));
+    CHECK_THAT(refusal_of_text(text), StartsWith("job.json: ") && ContainsSubstring(says));
 }
 
 TEST_CASE("what a lenient JSON parser lets through is refused") {
@@ -300,9 +300,10 @@ TEST_CASE("a job of too many tasks, or that is swept as a whole, is refused") {
   Json job = with("/scene/length_m", R"({"uniform": [1, 2]})");
   job["samples"] = 1000000;
   job["solve"] = {{"tolerance", {{"grid", {0.1, 0.01}}}}};
-  CHECK_THAT(refusal(job), Contains("2 grid points with 1000000 samples each") && Contains("must be at most 1000000"));
+  CHECK_THAT(refusal(job), ContainsSubstring("2 grid points with 1000000 samples each") &&
+                               ContainsSubstring("must be at most 1000000"));
   CHECK_THAT(refusal(grid({small_job(), small_job()})),
-             Contains("grid: this key cannot be swept; sweep a value instead"));
+             ContainsSubstring("grid: this key cannot be swept; sweep a value instead"));
 }
 
 TEST_CASE("the nearest known word is found for small mistakes and none for large ones") {

@@ -1,13 +1,13 @@
 // Scenes in jobs: the structs and segments that their keys become. jobs/schema.json has their defaults; test_job_refusals.cpp
 // and inputs/ have what is refused.
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "runner/measure/plan_check.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;
-using Catch::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace test_job_scenes {
 
@@ -130,8 +130,8 @@ TEST_CASE("a forest has at most as many trees as the rods of a file can be numbe
   CHECK(plan_of(job).task(0).segments == 32767 * 3);
   job["scene"]["rows"] = 182;
   job["scene"]["columns"] = {{"grid", {180, 182}}};
-  CHECK_THAT(refusal(job), Contains("job.json: scene: rows x columns is 33124") && Contains("must be at most 32767") &&
-                               Contains("several scenes"));
+  CHECK_THAT(refusal(job), ContainsSubstring("job.json: scene: rows x columns is 33124") &&
+                               ContainsSubstring("must be at most 32767") && ContainsSubstring("several scenes"));
 }
 
 TEST_CASE("the scenes that are made for contact are read from their keys, and count all their rods") {
@@ -294,14 +294,17 @@ TEST_CASE("guesses that need single chains are refused for other scenes before a
   };
   const char* knn = R"({"knn": {"data": ")" PRETRAINED R"(/rods.h5"}})";  // the file is not read yet
   CHECK(refused(small_job(), knn).empty());
-  CHECK_THAT(refused(ring_job(), knn),
-             Contains("guesses[2]: \"knn\" ") && Contains("rods with loops") && Contains("12 segments of task 0"));
-  CHECK_THAT(refused(tree_job(), knn), Contains("rods with branches") && Contains("27 segments of task 0"));
+  CHECK_THAT(refused(ring_job(), knn), ContainsSubstring("guesses[2]: \"knn\" ") &&
+                                           ContainsSubstring("rods with loops") &&
+                                           ContainsSubstring("12 segments of task 0"));
+  CHECK_THAT(refused(tree_job(), knn),
+             ContainsSubstring("rods with branches") && ContainsSubstring("27 segments of task 0"));
   CHECK(refused(with("/scene/depth", "0", tree_job()), knn).empty());
   CHECK(refused(net_job(), R"({"copingnet": {"model": ")" PRETRAINED R"(/bending-paper.h5"}})").empty());
   CHECK_THAT(
       refused(small_job(), R"({"copingnet": {"model": ")" PRETRAINED R"(/bending-paper.h5", "corrections": 2}})"),
-      Contains("guesses[2]: corrections above 1 ") && Contains("bending-paper.h5, a network without factors"));
+      ContainsSubstring("guesses[2]: corrections above 1 ") &&
+          ContainsSubstring("bending-paper.h5, a network without factors"));
 }
 
 TEST_CASE("a scene whose factor needs too much memory is refused before it runs, with what does without") {
@@ -310,16 +313,18 @@ TEST_CASE("a scene whose factor needs too much memory is refused before it runs,
     return message_of<JobError>([&] { check_factors(plan_of(job), little); });
   };
   Json job = job_with_scene(R"("type": "lattice", "nodes_x": 4, "segments": 2, "mesh_m": 0.2, "radius_m": 0.01)");
-  CHECK_THAT(refusal_of_factors(job), Contains("solve: task 0: a direct solve of 400 joints needs 0.00") &&
-                                          Contains("0.000931 GiB; must be a smaller scene, or method \"cg\" with "
-                                                   "\"reference\": \"cg\" (no factorisation)"));
+  CHECK_THAT(refusal_of_factors(job),
+             ContainsSubstring("solve: task 0: a direct solve of 400 joints needs 0.00") &&
+                 ContainsSubstring("0.000931 GiB; must be a smaller scene, or method \"cg\" with "
+                                   "\"reference\": \"cg\" (no factorisation)"));
   job["solve"]["reference"] = "cg";
   CHECK(refusal_of_factors(job) == "");
   job["guesses"] = Json::parse(R"(["zero", {"guarded": {"guess": {"oracle": {"error": 0.1}}, "threshold": 1}}])");
-  CHECK_THAT(refusal_of_factors(job), Contains("guesses: task 0: ") && Contains("no \"oracle\""));
+  CHECK_THAT(refusal_of_factors(job), ContainsSubstring("guesses: task 0: ") && ContainsSubstring("no \"oracle\""));
   job["guesses"] = {"zero"};
   job["scene"]["contact"] = Json::object();
-  CHECK_THAT(refusal_of_factors(job), Contains("scene.contact: task 0: ") && Contains("without contact"));
+  CHECK_THAT(refusal_of_factors(job),
+             ContainsSubstring("scene.contact: task 0: ") && ContainsSubstring("without contact"));
   CHECK_NOTHROW(check_factors(plan_of(job)));
   // The memory of chains and trees grows linearly, so they are not checked.
   CHECK(refusal_of_factors(with("/scene/segments", "100000")) == "");

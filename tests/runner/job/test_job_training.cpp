@@ -1,7 +1,7 @@
 // Jobs of kind "train": keys, their meaning, refusals.
-#include <catch2/catch.hpp>
 
 #include "runner/specs/training_job.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;

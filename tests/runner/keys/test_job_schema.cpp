@@ -1,10 +1,10 @@
 // Every key is described, and the JSON Schema follows the table of keys. tests/command/test_schema.py checks the committed schema against the
 // reader with a real validator.
-#include <catch2/catch.hpp>
 
 #include "runner/keys/job_schema.hpp"
 #include "runner/keys/key.hpp"
 #include "runner/specs/guess_keys.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;

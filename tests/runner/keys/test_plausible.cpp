@@ -1,6 +1,6 @@
 // Values that seem to be in another unit cause a warning. For the shipped jobs see job/test_shipped_jobs.cpp.
-#include <catch2/catch.hpp>
 
+#include "tests/catch.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;
@@ -13,7 +13,7 @@ using Texts = std::vector<std::string>;
 void check_warning(const Json& job, const Texts& parts) {
   const Texts warnings = job_of(job).warnings;
   REQUIRE(warnings.size() == 1);
-  for (const std::string& part : parts) CHECK_THAT(warnings[0], Catch::Contains(part));
+  for (const std::string& part : parts) CHECK_THAT(warnings[0], Catch::Matchers::ContainsSubstring(part));
 }
 
 TEST_CASE("a value outside of what real rods have is named with the unit that it may have been meant in") {

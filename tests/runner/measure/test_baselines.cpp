@@ -1,11 +1,11 @@
 // Whole tasks with baselines from files: nearest neighbours, and a network instead of the solve.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 
 #include "runner/measure/plan_check.hpp"
 #include "runner/measure/shared_inputs.hpp"
 #include "runner/training/model_file.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {
@@ -116,14 +116,14 @@ TEST_CASE("models are refused where they are for something else") {
     return message_of<JobError>([&] { check_guesses(Plan(parse_job(job.dump(), folder / "job.json"))); });
   };
   CHECK_THAT(refusal_of(instead_of_the_solve("states.h5")),
-             Catch::Contains("solve.model: states.h5 is not allowed: its encoding is \"state\""));
+             Catch::Matchers::ContainsSubstring("solve.model: states.h5 is not allowed: its encoding is \"state\""));
   CHECK(refusal_of(instead_of_the_solve("systems.h5")).empty());
   Json simulator = instead_of_the_solve("systems.h5");
   simulator["solve"]["method"] = "state_network";
-  CHECK_THAT(refusal_of(simulator),
-             Catch::Contains("solve.model: systems.h5 is not allowed: its encoding is not \"state\""));
+  CHECK_THAT(refusal_of(simulator), Catch::Matchers::ContainsSubstring(
+                                        "solve.model: systems.h5 is not allowed: its encoding is not \"state\""));
   CHECK_THAT(refusal_of(with("/guesses", R"(["zero", {"copingnet": {"model": "states.h5"}}])")),
-             Catch::Contains("guesses[1]: states.h5 is not allowed"));
+             Catch::Matchers::ContainsSubstring("guesses[1]: states.h5 is not allowed"));
 }
 
 TEST_CASE("a network whose answer is no number ends its task, and only that") {
@@ -133,7 +133,7 @@ TEST_CASE("a network whose answer is no number ends its task, and only that") {
   job["solve"] = {{"grid", {job["solve"], {{"method", "direct"}}}}};
   const std::vector<TaskRecord> records = evaluated(folder, job);
   CHECK(records[0].outcome == TaskOutcome::not_a_number);
-  CHECK_THAT(records[0].message, Catch::Contains("step 0: the network's answer is"));
+  CHECK_THAT(records[0].message, Catch::Matchers::ContainsSubstring("step 0: the network's answer is"));
   CHECK(records[0].tasks.steps_done.front() == 0);
   CHECK(records[1].outcome == TaskOutcome::ok);
 }

@@ -1,12 +1,12 @@
 // Evaluation of one task: counters, for guesses of known quality.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 
 #include "runner/measure/measured_solve.hpp"
 #include "runner/measure/run_task.hpp"
 #include "solver/step/time_step.hpp"
+#include "tests/catch.hpp"
 #include "tests/hand_clock.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
@@ -70,7 +70,7 @@ TEST_CASE("a time limit and a stop are met in the middle of a solve") {
   job["task_time_limit_s"] = looks_of_one_step() - 3;
   const TaskRecord late = evaluated(job, TaskOutcome::timed_out, test::HandClock::ticking);
   CHECK(late.tasks.steps_done[0] == 0);
-  CHECK_THAT(late.message, Catch::StartsWith("step 0: the time limit of"));
+  CHECK_THAT(late.message, Catch::Matchers::StartsWith("step 0: the time limit of"));
 }
 
 TEST_CASE("a time limit and a stop are met while scene and systems are built") {
@@ -80,8 +80,8 @@ TEST_CASE("a time limit and a stop are met while scene and systems are built") {
   job["task_time_limit_s"] = 0.5;
   const TaskRecord late = evaluated(job, TaskOutcome::timed_out, test::HandClock::ticking);
   CHECK(late.tasks.steps_done[0] == 0);
-  CHECK_THAT(late.message,
-             Catch::StartsWith("step 0: the time limit of 0.5 s") && Catch::Contains("task_time_limit_s"));
+  CHECK_THAT(late.message, Catch::Matchers::StartsWith("step 0: the time limit of 0.5 s") &&
+                               Catch::Matchers::ContainsSubstring("task_time_limit_s"));
   CHECK(std::isnan(late.steps.length_drift[0]));
 }
 

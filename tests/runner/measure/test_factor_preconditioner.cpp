@@ -1,8 +1,8 @@
 // Learned factors as preconditioner of CG: symmetric, and CG ends at the solution.
-#include <catch2/catch.hpp>
 
 #include "network/guess/factor_preconditioner.hpp"
 #include "solver/cg/cg_solver.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/models.hpp"
 #include "tests/solver/support.hpp"
 

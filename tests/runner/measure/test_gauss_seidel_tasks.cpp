@@ -1,7 +1,7 @@
 // Whole tasks by Gauss-Seidel: their records, compared with those of the direct solve.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/catch.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {

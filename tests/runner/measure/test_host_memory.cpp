@@ -1,5 +1,4 @@
 // Limits of control groups, and memory.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -7,6 +6,7 @@
 
 #include "runner/measure/host_memory.hpp"
 #include "runner/mpi/mpi_session.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;

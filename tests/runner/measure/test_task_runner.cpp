@@ -1,9 +1,9 @@
 // An error in a task becomes an outcome in the file; an error while writing, or of the request to stop, does not.
-#include <catch2/catch.hpp>
 #include <exception>
 #include <vector>
 
 #include "runner/measure/task_runner.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {

@@ -1,10 +1,10 @@
 // The measured time of a guess, with a guess of known durations.
 #include <array>
-#include <catch2/catch.hpp>
 #include <memory>
 
 #include "runner/measure/timed_guess.hpp"
 #include "solver/scene/scenes.hpp"
+#include "tests/catch.hpp"
 #include "tests/hand_clock.hpp"
 
 namespace rodsweep {

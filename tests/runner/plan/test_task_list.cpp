@@ -1,10 +1,10 @@
 // A compact task list returns the tasks that were added, with consecutive rows.
-#include <catch2/catch.hpp>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
 
 #include "runner/plan/task_list.hpp"
+#include "tests/catch.hpp"
 
 using namespace rodsweep;
 

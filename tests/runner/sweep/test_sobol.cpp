@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "runner/sweep/sobol.hpp"
 #include "solver/numbers/counter_random.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;

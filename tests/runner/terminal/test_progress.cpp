@@ -1,17 +1,17 @@
 // Progress, summaries and their words.
-#include <catch2/catch.hpp>
 #include <csignal>
 
 #include "runner/command/sweep_summary.hpp"
 #include "runner/terminal/formats.hpp"
 #include "runner/terminal/progress.hpp"
 #include "solver/plugin/printable.hpp"
+#include "tests/catch.hpp"
 
 using namespace rodsweep;
 
 namespace test_progress {
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
 using Catch::Matchers::StartsWith;
 using std::chrono::seconds;
@@ -84,10 +84,11 @@ TEST_CASE("the summary names outcomes, first failures, use of workers, file and 
 TEST_CASE("the summary counts solves that missed their tolerance") {
   SweepSummary summary{15, {}, dispatch_of(6, 0, 9), 2, "x.h5"};
   summary.solves = {1040, 0};
-  CHECK_THAT(summary_text(summary), !Contains("missed"));
+  CHECK_THAT(summary_text(summary), !ContainsSubstring("missed"));
   summary.solves.missed = 29;
-  CHECK_THAT(summary_text(summary),
-             Contains("\n29 of 1040 solves missed the tolerance: their guesses have no times in these tasks\n"));
+  CHECK_THAT(
+      summary_text(summary),
+      ContainsSubstring("\n29 of 1040 solves missed the tolerance: their guesses have no times in these tasks\n"));
 }
 
 TEST_CASE("the summary of a shard counts its own tasks, and says how the shards are put together") {

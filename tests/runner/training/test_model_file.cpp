@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,13 +10,14 @@
 #include "runner/file/hdf5.hpp"
 #include "runner/specs/training_job.hpp"
 #include "runner/training/model_file.hpp"
+#include "tests/catch.hpp"
 #include "tests/network/models.hpp"
 #include "tests/runner/file_examples.hpp"
 
 namespace rodsweep {
 namespace test_model_file {
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
 using Catch::Matchers::StartsWith;
 namespace fs = std::filesystem;
@@ -179,7 +179,7 @@ TEST_CASE("an earlier state of the file is replaced, another file never") {
   CHECK(model_hash(*read_model(folder / "model.h5").model) == model_hash(*model));
   CHECK_THAT(message_of<FileError>([&] { file.save(some_card(), *other, std::nullopt); }),
              EndsWith("was replaced by another program and is not overwritten"));
-  CHECK_THAT(message_of<FileError>([&] { save(folder / "model.h5", *other); }), Contains("exists already"));
+  CHECK_THAT(message_of<FileError>([&] { save(folder / "model.h5", *other); }), ContainsSubstring("exists already"));
   CHECK(model_hash(*read_model(folder / "model.h5").model) == model_hash(*model));
   CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);  // no temporary file remains
 }
@@ -210,7 +210,7 @@ TEST_CASE("files that are no models are refused") {
   for (const double part : {0.1, 0.5, 0.9}) {
     fs::copy_file(model, folder / "cut.h5", fs::copy_options::overwrite_existing);
     fs::resize_file(folder / "cut.h5", static_cast<std::uintmax_t>(part * static_cast<double>(fs::file_size(model))));
-    CHECK_THAT(refusal_of(folder / "cut.h5"), Contains("cut.h5 is damaged or incomplete"));
+    CHECK_THAT(refusal_of(folder / "cut.h5"), ContainsSubstring("cut.h5 is damaged or incomplete"));
   }
 }
 
@@ -250,7 +250,7 @@ TEST_CASE("weights, settings and cards that cannot be are refused") {
     const TemporaryFolder folder;
     const fs::path path = save(folder / "model.h5", *some_model(settings));
     change(hdf5::open_file(path, H5F_ACC_RDWR).id());
-    CHECK_THAT(refusal_of(path), StartsWith(path.native()) && Contains(says));
+    CHECK_THAT(refusal_of(path), StartsWith(path.native()) && ContainsSubstring(says));
   }
 }
 

@@ -1,15 +1,15 @@
 // Training in one process: its results, its end, and bits that an interruption does not change. For several ranks see
 // tests/mpi/test_training.py.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "tests/catch.hpp"
 #include "tests/runner/training_examples.hpp"
 
 namespace rodsweep {
 namespace test_training {
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 bool same(const std::vector<Epoch>& a, const std::vector<Epoch>& b) {
   const auto equal = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
@@ -116,15 +116,16 @@ TEST_CASE("ranks take turns with the simulations whose CG ratio is measured") {
 TEST_CASE("data that are missing or too few are refused with what to do") {
   Toy toy;
   toy.training.validation_simulations = 8;
-  CHECK_THAT(message_of<JobError>([&] { LearningSets(toy.training, toy.job); }),
-             Contains("validation_simulations: 8 is not allowed: ") && Contains("holds 8 simulations"));
+  CHECK_THAT(
+      message_of<JobError>([&] { LearningSets(toy.training, toy.job); }),
+      ContainsSubstring("validation_simulations: 8 is not allowed: ") && ContainsSubstring("holds 8 simulations"));
   toy.training.validation_simulations = 7;
   toy.training.training.batch = 8;
   CHECK_THAT(message_of<FileError>([&] { training_data(toy.training, LearningSets(toy.training, toy.job), 1); }),
-             Contains("gives 6 examples for training and 42 for validation: too few for batches of 8"));
+             ContainsSubstring("gives 6 examples for training and 42 for validation: too few for batches of 8"));
   toy.training.data = {toy.folder / "nowhere.h5"};
   CHECK_THAT(message_of<JobError>([&] { LearningSets(toy.training, toy.job); }),
-             Contains("data: ") && Contains("make the data set first"));
+             ContainsSubstring("data: ") && ContainsSubstring("make the data set first"));
 }
 
 TEST_CASE("a network of states, which takes steps of Euler, is not trained with data of bdf2") {
@@ -136,7 +137,8 @@ TEST_CASE("a network of states, which takes steps of Euler, is not trained with 
   CHECK(LearningSets(toy.training, toy.job).training().size() == 4);
   toy.training.network.encoding = Encoding::state;
   CHECK_THAT(message_of<JobError>([&] { LearningSets(toy.training, toy.job); }),
-             Contains("network.encoding: \"state\" is not allowed") && Contains("second.h5") && Contains("\"euler\""));
+             ContainsSubstring("network.encoding: \"state\" is not allowed") && ContainsSubstring("second.h5") &&
+                 ContainsSubstring("\"euler\""));
 }
 
 TEST_CASE("losses fall, the model kept is that of the least validation loss") {

@@ -1,11 +1,11 @@
 // CG ratios on recorded simulations equal those of a sweep.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/measure/guesses.hpp"
 #include "runner/training/validation_ratio.hpp"
 #include "solver/guess/zero_guess.hpp"
+#include "tests/catch.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {

@@ -1,8 +1,8 @@
 // CG on condensed systems: same solution and accuracy as CG on all joints, fewer iterations.
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "solver/cg/condensed_cg.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/cg_runs.hpp"
 
 namespace rodsweep::test_condensed_cg {

@@ -1,10 +1,10 @@
 // CG by PETSc's KSPCG: solutions, preconditioners, histories and iteration counts.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "solver/scene/scenes.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/cg_runs.hpp"
 
 namespace rodsweep::test_conjugate_gradient {

@@ -1,8 +1,8 @@
 // Every failure of a CG solve, and the state that a solver keeps between solves.
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "solver/cg/petsc_session.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/cg_runs.hpp"
 
 namespace rodsweep::test_conjugate_gradient_ends {

@@ -1,11 +1,11 @@
 // Pairs of boxes against brute force, pairs kept between steps, and segments of a rod that can touch.
-#include <catch2/catch.hpp>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "solver/contact/contact_bodies.hpp"
 #include "solver/scene/scene_parts.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_broad_phase {
@@ -187,7 +187,7 @@ TEST_CASE("obstacles that are none are refused") {
   scene.obstacles = {Ball{{0, 0, 0}, 0}};
   CHECK_THROWS_WITH(ContactBodies(scene), "an obstacle's radius is 0.000000; must be positive and finite");
   scene.obstacles = {Ball{{0, NAN, 0}, 1}};
-  CHECK_THROWS_WITH(ContactBodies(scene), Catch::Contains("not finite"));
+  CHECK_THROWS_WITH(ContactBodies(scene), Catch::Matchers::ContainsSubstring("not finite"));
 }
 
 }  // namespace rodsweep::test_broad_phase

@@ -1,9 +1,9 @@
 // Closest points of axes against brute force, first contacts against closed forms.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/contact/capsule_distance.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_capsule_distance {

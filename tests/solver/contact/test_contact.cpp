@@ -1,8 +1,8 @@
 // Collisions: impulses of rigid bodies, momentum, energy, no tunnelling.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/numbers/rotation.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 #include "tests/solver/touching.hpp"
 
@@ -249,7 +249,7 @@ TEST_CASE("contact settings and half-spaces that are none are refused") {
   for (const auto& [change, what] : refused) {
     Scene scene = good;
     change(scene);
-    CHECK_THROWS_WITH(TimeStepper(scene, {}), Catch::Contains(what));
+    CHECK_THROWS_WITH(TimeStepper(scene, {}), Catch::Matchers::ContainsSubstring(what));
   }
 }
 

@@ -1,7 +1,7 @@
 // Coulomb friction against closed forms: slopes, rolling, spinning down.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/catch.hpp"
 #include "tests/solver/touching.hpp"
 
 namespace rodsweep::test_contact_friction {

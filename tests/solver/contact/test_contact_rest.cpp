@@ -1,8 +1,8 @@
 // Rods at rest penetrate by at most 1 % of the radius; what steps with contacts report, keep and refuse.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "tests/catch.hpp"
 #include "tests/solver/touching.hpp"
 
 namespace rodsweep::test_contact_rest {

@@ -1,8 +1,8 @@
 // The law of one contact: the fixed point of the relaxation, for any effective mass.
 #include <Eigen/Geometry>
-#include <catch2/catch.hpp>
 
 #include "solver/contact/coulomb_contact.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_coulomb_contact {

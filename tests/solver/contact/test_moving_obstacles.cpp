@@ -1,7 +1,7 @@
 // Moving obstacles that carry, push, drag and press rods.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 #include "tests/solver/touching.hpp"
 

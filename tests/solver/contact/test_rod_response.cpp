@@ -1,7 +1,7 @@
 // The response of rods to impulses, against dense algebra; Delassus operators against responses.
-#include <catch2/catch.hpp>
 
 #include "solver/contact/rod_response.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_rod_response {

@@ -1,11 +1,11 @@
 // The block elimination against Eigen's dense Cholesky; its order; refusals.
-#include <catch2/catch.hpp>
 #include <limits>
 #include <string>
 
 #include "solver/factor/block_factor.hpp"
 #include "solver/factor/elimination_order.hpp"
 #include "solver/linear/linear_system.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_block_factor {

@@ -1,9 +1,9 @@
 // Struts and crossings of a rod, and the condensed system after elimination of the struts.
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "solver/factor/condensation.hpp"
 #include "solver/linear/linear_system.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_condensation {

@@ -1,11 +1,11 @@
 // The choice between the factor of A and that of the condensed system; the condensed solution against that of A.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include "solver/factor/direct_factor.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_direct_factor {

@@ -1,10 +1,10 @@
 // Orders of elimination and their fill; elimination trees against elimination of sets; the plan of a factorisation.
-#include <catch2/catch.hpp>
 #include <set>
 
 #include "solver/factor/block_factor.hpp"
 #include "solver/factor/elimination_order.hpp"
 #include "solver/linear/linear_system.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_elimination_order {
@@ -127,8 +127,9 @@ TEST_CASE("a factor that would need too much memory is refused with its size, be
   CHECK_NOTHROW(refuse_too_large(plan));
   plan.bytes = 1.5 * most_factor_bytes;
   CHECK_THROWS_AS(refuse_too_large(plan), FactorTooLarge);
-  CHECK_THROWS_WITH(refuse_too_large(plan),
-                    Catch::Contains("1000 joints") && Catch::Contains("6 GiB") && Catch::EndsWith(" 4 GiB"));
+  CHECK_THROWS_WITH(refuse_too_large(plan), Catch::Matchers::ContainsSubstring("1000 joints") &&
+                                                Catch::Matchers::ContainsSubstring("6 GiB") &&
+                                                Catch::Matchers::EndsWith(" 4 GiB"));
   EliminationTree dense;  // 14,000 rows, all coupled to each other
   for (int k = 0; k < 14000; ++k) {
     dense.row.push_back(k);

@@ -1,6 +1,5 @@
 // Incomplete factors against dense matrices: accuracy and quality as preconditioners.
 #include <Eigen/Eigenvalues>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -9,6 +8,7 @@
 #include "solver/factor/incomplete_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/scene/scenes.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/dense.hpp"
 #include "tests/solver/support.hpp"
 

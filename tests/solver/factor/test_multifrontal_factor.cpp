@@ -1,5 +1,4 @@
 // The multifrontal factorisation against Eigen's dense Cholesky; refusals.
-#include <catch2/catch.hpp>
 #include <limits>
 #include <numeric>
 
@@ -7,6 +6,7 @@
 #include "solver/factor/elimination_order.hpp"
 #include "solver/linear/interruption.hpp"
 #include "solver/linear/linear_system.hpp"
+#include "tests/catch.hpp"
 #include "tests/hand_clock.hpp"
 #include "tests/solver/support.hpp"
 

@@ -1,12 +1,12 @@
 // Deflated CG with known spectra and with stored solutions.
 #include <Eigen/Eigenvalues>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/guess/guarded_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/wrapped_guess.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_deflation {

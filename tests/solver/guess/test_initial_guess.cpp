@@ -1,5 +1,4 @@
 // The guesses: their proposals, their fallback to zero, and the state that they must not keep.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/wrapped_guess.hpp"
 #include "solver/guess/zero_guess.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_initial_guess {

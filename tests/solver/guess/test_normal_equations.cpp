@@ -1,8 +1,8 @@
 // The small normal equations of guesses against dense algebra.
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "solver/guess/normal_equations.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_normal_equations {

@@ -1,11 +1,11 @@
 // A guess by regression on earlier right-hand sides: exact if possible, else least squares; no matrix product.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
 #include "solver/step/projection.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_regression_guess {

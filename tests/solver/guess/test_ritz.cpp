@@ -1,10 +1,10 @@
 // Recycled Ritz vectors against the eigenvalues of the preconditioned matrix.
 #include <Eigen/Eigenvalues>
-#include <catch2/catch.hpp>
 
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/guess/extrapolation_guess.hpp"
 #include "solver/guess/ritz_guess.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_ritz {

@@ -1,9 +1,9 @@
 // Projected guesses: optimal in the span of earlier solutions, for the current matrix.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/guess/extrapolation_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_subspace_guess {

@@ -1,8 +1,8 @@
 // The block matrix, and vectors stored side by side for products with it, against dense algebra.
-#include <catch2/catch.hpp>
 
 #include "solver/linear/block_matrix.hpp"
 #include "solver/linear/stored_vectors.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_block_matrix {

@@ -1,10 +1,10 @@
 #include "solver/linear/interruption.hpp"
 
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <stdexcept>
 #include <thread>
 
+#include "tests/catch.hpp"
 #include "tests/hand_clock.hpp"
 
 using namespace rodsweep;

@@ -1,10 +1,10 @@
 // A, b and the update against dense matrices from finite differences and world inertia tensors; the product without A.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/linear/linear_system.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/scene/scenes.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_linear_system {
@@ -103,7 +103,7 @@ TEST_CASE("applying a solution moves the rod by M^-1 J^T dlambda, but no static 
 TEST_CASE("a joint between two static segments is refused by number") {
   const Rod rod = test::random_rod(test::chain(5), {2, 3}, 1);
   CHECK_THROWS_MATCHES(LinearSystem(rod), SceneError,
-                       Catch::Message("joint 2 joins two static segments; remove it or free one of them"));
+                       Catch::Matchers::Message("joint 2 joins two static segments; remove it or free one of them"));
 }
 
 using namespace test;

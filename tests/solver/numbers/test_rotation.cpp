@@ -1,8 +1,8 @@
 // The two rotation maps of the time step, and the rotation between two directions.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/numbers/rotation.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_rotation {

@@ -1,8 +1,8 @@
 // Geometry of cross-sections, and the mass of their segments.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/rod/rod.hpp"
+#include "tests/catch.hpp"
 
 namespace rodsweep::test_cross_section {
 

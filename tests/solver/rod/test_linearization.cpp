@@ -1,11 +1,11 @@
 // Constraints and Jacobians against central differences. tests/solver/step/test_turned_scenes.cpp turns whole systems.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "solver/linear/linear_system.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_linearization {

@@ -1,9 +1,9 @@
 // Physical stretching and shearing: compliance, energy, closed forms for pulled and sheared rods.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/step/gauss_seidel.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 
 namespace rodsweep::test_physical_stretch {

@@ -1,11 +1,11 @@
 // Rings and nets: geometry, rest states, held segments, counts, length, refusals.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
 #include "solver/linear/linear_system.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_closed_scenes {
@@ -173,18 +173,19 @@ TEST_CASE("rings and nets that cannot be are refused by what is wrong with them"
   Ring wall = ring(9);
   wall.clamp = Clamp::wall;
   CHECK_THROWS_WITH(build_scene(wall), "a ring has no end that the clamp \"wall\" could hold");
-  CHECK_THROWS_WITH(build_scene(ring(4, 361)), Catch::StartsWith("twist_deg is 361.000000; must be at most 90"));
+  CHECK_THROWS_WITH(build_scene(ring(4, 361)),
+                    Catch::Matchers::StartsWith("twist_deg is 361.000000; must be at most 90"));
   Net net;
   net.rows = 1;
   CHECK_THROWS_WITH(build_scene(net), "rows is 1; must be at least 2");
   net.rows = net.columns = 1000;
   net.segments = 1000;
-  CHECK_THROWS_WITH(validate(net), Catch::StartsWith("a net ") && Catch::EndsWith(" 10000000"));
+  CHECK_THROWS_WITH(validate(net), Catch::Matchers::StartsWith("a net ") && Catch::Matchers::EndsWith(" 10000000"));
   BendingRod both = test::bending_rod(4);
   both.stretch = Stretch::physical;
   both.stretch_compliance_per_j = 1e-6;
-  CHECK_THROWS_WITH(validate(both),
-                    Catch::Contains("stretch is physical") && Catch::Contains("stretch_compliance_per_j"));
+  CHECK_THROWS_WITH(validate(both), Catch::Matchers::ContainsSubstring("stretch is physical") &&
+                                        Catch::Matchers::ContainsSubstring("stretch_compliance_per_j"));
 }
 
 }  // namespace rodsweep::test_closed_scenes

@@ -1,6 +1,5 @@
 // Lattices: nodes and rods against nearest neighbours; rest state, held and loaded segments, stiffness of nodes,
 // refusals.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <set>
@@ -8,6 +7,7 @@
 #include "solver/linear/linear_system.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/lattice_nodes.hpp"
 #include "tests/solver/support.hpp"
 
@@ -215,10 +215,10 @@ TEST_CASE("lattices that cannot be are refused by what is wrong with them") {
   CHECK_THROWS_WITH(build_scene(lattice(Cell::octet, 2, 0, 1, 1)), "nodes_z is 1; must be at least 2");
   CHECK_THROWS_WITH(build_scene(lattice(Cell::octet, 2, 2, 2, 0)), "segments is 0; must be at least 1");
   CHECK_THROWS_WITH(build_scene(lattice(Cell::cubic, 2, 2, 2, 1, Held::corners)),
-                    Catch::StartsWith("segments is 1; must be at least 2: between the held corners"));
+                    Catch::Matchers::StartsWith("segments is 1; must be at least 2: between the held corners"));
   CHECK_NOTHROW(build_scene(lattice(Cell::cubic, 2, 2, 2, 2, Held::corners)));
   CHECK_NOTHROW(build_scene(lattice(Cell::octet, 2, 2, 2, 1, Held::corners)));
-  CHECK_THROWS_WITH(validate(lattice(Cell::cubic, 1000, 1000, 1000, 1)), Catch::EndsWith(" 10000000"));
+  CHECK_THROWS_WITH(validate(lattice(Cell::cubic, 1000, 1000, 1000, 1)), Catch::Matchers::EndsWith(" 10000000"));
 }
 
 }  // namespace rodsweep::test_lattices

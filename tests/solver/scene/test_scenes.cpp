@@ -1,5 +1,4 @@
 // Rods and scenes: masses, geometry, rest states, compliances, refusals.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -7,6 +6,7 @@
 #include "solver/numbers/narrow.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_scenes {
@@ -73,7 +73,7 @@ TEST_CASE("impossible segments are refused with quantity, value and bound") {
     std::vector<S> segments(3, good_segment());
     change(segments[1]);
     CHECK_THROWS_AS(Rod(segments, {}), SceneError);
-    CHECK_THROWS_WITH(Rod(segments, {}), Catch::StartsWith(std::string("segment 1: ") + what));
+    CHECK_THROWS_WITH(Rod(segments, {}), Catch::Matchers::StartsWith(std::string("segment 1: ") + what));
   }
   CHECK_THROWS_WITH(Rod({}, {}), "a rod needs at least one segment");
 }
@@ -98,7 +98,8 @@ TEST_CASE("impossible joints are refused with quantity, value and bound") {
   }
   SegmentSpec wall;
   wall.is_static = true;
-  CHECK_THROWS_WITH(Rod({wall, wall}, {good_joint()}), Catch::StartsWith("joint 0: length is 0; must be positive"));
+  CHECK_THROWS_WITH(Rod({wall, wall}, {good_joint()}),
+                    Catch::Matchers::StartsWith("joint 0: length is 0; must be positive"));
 }
 
 TEST_CASE("a bending rod runs from the origin at its angle, straight and at rest") {
@@ -159,7 +160,7 @@ TEST_CASE("the default stretch compliance is that of the rod's weight and tip fo
 
 TEST_CASE("scenes with too few segments are refused") {
   CHECK_THROWS_WITH(build_scene(test::bending_rod(1)),
-                    Catch::StartsWith("segments is 1; must be at least 2: the clamp"));
+                    Catch::Matchers::StartsWith("segments is 1; must be at least 2: the clamp"));
   CHECK_THROWS_WITH(build_scene(test::bending_rod(0, Clamp::wall)), "segments is 0; must be at least 1");
   Helix helix;
   helix.segments = -3;
@@ -170,7 +171,7 @@ TEST_CASE("scenes with too few segments are refused") {
 
 TEST_CASE("a scene of more rods than results can number is refused with the keys, their value and the bound") {
   const auto refused = [](const SceneSpec& spec, const std::string& keys) {
-    CHECK_THROWS_WITH(validate(spec), Catch::StartsWith(keys + " is 32768; must be at most 32767"));
+    CHECK_THROWS_WITH(validate(spec), Catch::Matchers::StartsWith(keys + " is 32768; must be at most 32767"));
   };
   Forest forest;
   forest.shape.depth = 0;

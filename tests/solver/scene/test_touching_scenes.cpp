@@ -1,9 +1,9 @@
 // Scenes for contact: their geometry and what each demonstrates. The knot stays a knot.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/numbers/rotation.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 #include "tests/solver/touching.hpp"
 
@@ -223,15 +223,16 @@ TEST_CASE("scenes that could only start with rods inside each other are refused"
   CHECK_THROWS_WITH(build_scene(flat), "height_m is 0.090000; must be at least 2 radius_m, or the rods overlap");
   Knot thick = knot();
   thick.radius_m = 0.1;
-  CHECK_THROWS_WITH(build_scene(thick), Catch::StartsWith("length_m is 2.000000; must be at least ") &&
-                                            Catch::EndsWith(" for a loose knot of this radius_m"));
+  CHECK_THROWS_WITH(build_scene(thick), Catch::Matchers::StartsWith("length_m is 2.000000; must be at least ") &&
+                                            Catch::Matchers::EndsWith(" for a loose knot of this radius_m"));
   RingChain narrow;
   narrow.length_m = 1;
   narrow.radius_m = 0.03;
-  CHECK_THROWS_WITH(build_scene(narrow), Catch::Contains("must be at least 1.200000 for rings of this radius_m"));
+  CHECK_THROWS_WITH(build_scene(narrow),
+                    Catch::Matchers::ContainsSubstring("must be at least 1.200000 for rings of this radius_m"));
   Bundle crossed;
   crossed.initial_angle_deg = -1;
-  CHECK_THROWS_WITH(build_scene(crossed), Catch::Contains("must be from 0 to 90 for a bundle"));
+  CHECK_THROWS_WITH(build_scene(crossed), Catch::Matchers::ContainsSubstring("must be from 0 to 90 for a bundle"));
 }
 
 }  // namespace rodsweep::test_touching_scenes

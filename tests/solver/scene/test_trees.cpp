@@ -1,8 +1,8 @@
 // Trees: segment counts, radii, directions, joints; forests; refusals.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_trees {
@@ -194,7 +194,7 @@ TEST_CASE("trees that cannot grow are refused with quantity, value and bound") {
   SkeletonTree measured;
   measured.trees =
       std::make_shared<const std::vector<Skeleton>>(1, Skeleton{{-1, {0, 0, 0}, 0.1}, {0, {0, 0, 0}, 0.1}});
-  CHECK_THROWS_WITH(build_scene(measured), Catch::StartsWith("node 1 of a skeleton: position "));
+  CHECK_THROWS_WITH(build_scene(measured), Catch::Matchers::StartsWith("node 1 of a skeleton: position "));
   measured.trees = std::make_shared<const std::vector<Skeleton>>(1, Skeleton{{-1, {0, 0, 0}, 0}, {0, {0, 1, 0}, 0.1}});
   CHECK_THROWS_WITH(build_scene(measured), "node 0 of a skeleton: radius is 0; must be positive");
 }

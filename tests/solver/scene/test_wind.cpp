@@ -1,8 +1,8 @@
 // Wind: properties of the field, and drag on free and on elastic segments.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/numbers/lane_math.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 

@@ -1,5 +1,4 @@
 // After its first steps, a time step allocates nothing: not in our code, Eigen or PETSc.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <functional>
 #include <map>
@@ -20,6 +19,7 @@
 #include "solver/numbers/rotation.hpp"
 #include "solver/step/gauss_seidel.hpp"
 #include "solver/step/time_step.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/allocations.hpp"
 #include "tests/solver/support.hpp"
 

@@ -1,6 +1,5 @@
 // BDF2 against closed forms and itself: second order for turns, twists, trees, loads, wind and drag, in both kinds of
 // step; momentum in impacts. For symmetries see tests/laws/every_scene.cpp.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -8,6 +7,7 @@
 
 #include "solver/step/gauss_seidel.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"

@@ -1,7 +1,7 @@
 // Numerical extremes: signs of quaternions, extreme moduli.
-#include <catch2/catch.hpp>
 
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 

@@ -1,6 +1,5 @@
 // Gauss-Seidel projections: what both conserve and refuse on any graph of joints; XPBD against Newton; PBD in closed
 // form.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -10,6 +9,7 @@
 
 #include "solver/step/gauss_seidel.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"

@@ -1,10 +1,10 @@
 // The balance of momentum: its residual, and steps that keep it.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 #include "tests/solver/touching.hpp"

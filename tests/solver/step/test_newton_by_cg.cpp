@@ -1,11 +1,11 @@
 // Newton's iterations by CG: Eisenstat and Walker's forcing terms, and steps that keep the balance of momentum.
-#include <catch2/catch.hpp>
 #include <optional>
 
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/step/forcing_terms.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 

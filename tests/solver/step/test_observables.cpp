@@ -1,9 +1,9 @@
 // Observables against closed forms.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_observables {

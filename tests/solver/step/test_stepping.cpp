@@ -1,10 +1,10 @@
 // Control flow of a time step: convergence of Newton, limits, failures, several rods, refusals.
-#include <catch2/catch.hpp>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
@@ -161,7 +161,7 @@ TEST_CASE("loads and clamps on segments that do not exist, and clamps on free on
   const auto still = [](double) { return Pose{Vector3::Zero(), Quaternion::Identity()}; };
   const auto refused = [](const Scene& with, const char* what) {
     Scene scene = with;
-    CHECK_THROWS_MATCHES(TimeStepper(scene, {}), SceneError, Catch::Message(what));
+    CHECK_THROWS_MATCHES(TimeStepper(scene, {}), SceneError, Catch::Matchers::Message(what));
   };
   Scene load = good, other_rod = good, clamp = good, free = good;
   load.loads.push_back({0, 4, {}, {}, {}});

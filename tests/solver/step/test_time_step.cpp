@@ -1,9 +1,9 @@
 // Mechanics of the time step: free bodies, loads and clamps against closed forms. Free fall, momenta and the order of
 // the motion are in validation/test_validation_motion.cpp.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"

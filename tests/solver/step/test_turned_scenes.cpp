@@ -1,8 +1,8 @@
 // A scene that is turned and shifted as a whole has the same linear systems, up to rounding, and moves alike by
 // Gauss-Seidel. tests/laws/every_scene.cpp has the same law for every scene by direct solves.
-#include <catch2/catch.hpp>
 
 #include "solver/step/gauss_seidel.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/turned.hpp"

@@ -1,12 +1,12 @@
 // Energy and momenta of the time step over long runs: implicit Euler dissipates energy to first order in the step,
 // never gains any, and conserves linear momentum.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <iterator>
 #include <optional>
 
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 

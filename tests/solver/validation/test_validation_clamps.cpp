@@ -1,11 +1,11 @@
 // A straight rod held at both ends, of which one moves: pure bending, pure torsion, helices. Both ends are static
 // segments. After the motion the rod relaxes (simulation.hpp). No gravity.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/numbers/rotation.hpp"
 #include "solver/rod/linearization.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 
 namespace rodsweep::test_validation_clamps {

@@ -1,8 +1,8 @@
 // Slender cantilevers near the loads at which they lose stability: a deep one that its end load turns sideways, and one
 // under an axial moment that keeps its direction. Steps in balance.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 
 namespace rodsweep::test_validation_instability {

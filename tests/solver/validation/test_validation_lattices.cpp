@@ -1,10 +1,10 @@
 // Lattices against frames of Timoshenko beams (timoshenko_frame.hpp): cantilevers with stiff nodes under end loads,
 // their first bending frequency, an exact state of strain. The frame includes the rods' half segments beyond the last
 // nodes as beams, so that both have the same mass.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
+#include "tests/catch.hpp"
 #include "tests/solver/lattice_nodes.hpp"
 #include "tests/solver/oscillation.hpp"
 #include "tests/solver/simulation.hpp"

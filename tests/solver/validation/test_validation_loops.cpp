@@ -1,8 +1,8 @@
 // Closed rods: Michell's instability of a twisted ring; a net under its weight.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 
 namespace rodsweep::test_validation_loops {

@@ -2,10 +2,10 @@
 //
 // Initial velocities start a mode; its own shape projects the motion (oscillation.hpp has the effect of implicit Euler
 // on frequency and amplitude).
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 
+#include "tests/catch.hpp"
 #include "tests/solver/oscillation.hpp"
 #include "tests/solver/simulation.hpp"
 

@@ -1,12 +1,12 @@
 // Motion against the invariants of every such discretisation: free fall, momenta, energy, first order in dt, quadratic
 // convergence of Newton.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 

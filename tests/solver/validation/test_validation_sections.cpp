@@ -2,10 +2,10 @@
 #include <boost/math/special_functions/ellint_1.hpp>
 #include <boost/math/special_functions/ellint_2.hpp>
 #include <boost/math/tools/roots.hpp>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "solver/step/observables.hpp"
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 
 namespace rodsweep::test_validation_sections {
@@ -177,35 +177,37 @@ TEST_CASE("Sections and tips that cannot be are refused by what is wrong with th
   BendingRod p = bar(10, Tube{0.06});
   CHECK_THROWS_WITH(validate(p), "section.wall_m is 0.06; must be at most radius_m, 0.050000");
   p.section = Rectangle{1e-200, 1e-200};
-  CHECK_THROWS_WITH(validate(p), Catch::StartsWith("section: the area [m^2] is 0; must be a number"));
+  CHECK_THROWS_WITH(validate(p), Catch::Matchers::StartsWith("section: the area [m^2] is 0; must be a number"));
   p.section = Tube{1e-19};  // thin, but its area is not lost in the difference of two circles
   CHECK_NOTHROW(validate(p));
   Ring ring;
   ring.section = Rectangle{0.01, 0.02};
   ring.twist_deg = 90;
   CHECK_THROWS_WITH(validate(ring),
-                    Catch::StartsWith("twist_deg is 90.000000; must be 0 for a \"section\" that bends"));
+                    Catch::Matchers::StartsWith("twist_deg is 90.000000; must be 0 for a \"section\" that bends"));
   p.section.reset();
   p.tip_motion = TipMotion{Vector3(0, 0.1, 0), Vector3::Zero(), 1};
-  CHECK_THROWS_WITH(validate(p), Catch::StartsWith("tip_motion moves the ends of the free part 2.002") &&
-                                     Catch::Contains("at most its length, 2.0"));
+  CHECK_THROWS_WITH(validate(p), Catch::Matchers::StartsWith("tip_motion moves the ends of the free part 2.002") &&
+                                     Catch::Matchers::ContainsSubstring("at most its length, 2.0"));
   BendingRod folded = p;
   folded.clamp = Clamp::segment;
   folded.tip_motion = TipMotion{Vector3::Zero(), Vector3(0, 0, 360), 1};  // the tip returns, but half-way it is folded
-  CHECK_THROWS_WITH(validate(folded), Catch::Contains("free part 2.0") && Catch::Contains("at most its length, 1.6"));
+  CHECK_THROWS_WITH(validate(folded), Catch::Matchers::ContainsSubstring("free part 2.0") &&
+                                          Catch::Matchers::ContainsSubstring("at most its length, 1.6"));
   folded.tip_motion = TipMotion{Vector3(-0.4, 0, 0), Vector3(360, 0, 0), 1};
   CHECK_NOTHROW(validate(folded));
   Helix far;
   far.tip_motion = TipMotion{Vector3(100, 0, 0), Vector3::Zero(), 1};
-  CHECK_THROWS_WITH(validate(far), Catch::Contains("free part 99.1"));
+  CHECK_THROWS_WITH(validate(far), Catch::Matchers::ContainsSubstring("free part 99.1"));
   p.stretch = Stretch::physical;
   CHECK_NOTHROW(validate(p));
   p.tip_torque_nm.x() = 1;
-  CHECK_THROWS_WITH(validate(p), Catch::Contains("tip_motion is given with a load on the tip"));
+  CHECK_THROWS_WITH(validate(p), Catch::Matchers::ContainsSubstring("tip_motion is given with a load on the tip"));
   p.tip_torque_nm.setZero();
   p.clamp = Clamp::segment;
   p.segments = 2;
-  CHECK_THROWS_WITH(validate(p), Catch::StartsWith("segments is 2; must be at least 3: the clamp \"segment\""));
+  CHECK_THROWS_WITH(validate(p),
+                    Catch::Matchers::StartsWith("segments is 2; must be at least 3: the clamp \"segment\""));
 }
 
 }  // namespace rodsweep::test_validation_sections

@@ -1,8 +1,8 @@
 // Rods at rest under their weight and under loads, against closed forms and quadratures. Relaxation (simulation.hpp)
 // reaches rest unless a test says otherwise. E = Young's modulus, w = rho A g.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 
 namespace rodsweep::test_validation_statics {

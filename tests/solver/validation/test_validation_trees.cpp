@@ -1,7 +1,7 @@
 // Statics of forks, kinks and cones against beams: small deflections under a weight of 1e-5 of gravity.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 
 namespace rodsweep::test_validation_trees {

@@ -1,9 +1,9 @@
 // Twisted rods below their buckling twist, and a beam that is spun up: right in balance, known errors of the paper's step.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 
+#include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
 
 namespace rodsweep::test_validation_twist {
