@@ -8,11 +8,13 @@ MAKEFLAGS += --no-print-directory
 CORES    := $(shell nproc)
 BUILD    ?= build
 PREFIX   ?= /usr/local
+RESULTS  ?= results
 BUILD_TYPE    ?=
 PORTABLE      ?= 0
 CHECKS        ?= 0
 SKIP_PACKAGES ?= 0
 FUZZ_SECONDS  ?= 600
+SUITE         ?= trixie
 
 yes = $(filter-out 0 no off,$(1))
 packages = $(if $(call yes,$(SKIP_PACKAGES)),true,cmake/packages.sh packages.txt $(1))
@@ -23,14 +25,15 @@ configure = generator=$$(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' $(2)/CMakeCach
   || { echo "$$log"; exit 1; }
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo test test-long test-cluster test-arm bench sanitize fuzz schema docs format format-check tidy install uninstall clean
+.PHONY: help configure build demo test test-long test-cluster test-debian test-arm bench sanitize fuzz schema docs format format-check tidy install uninstall clean
 
 help:
-	@echo 'make demo          build, run the demo sweep (half a minute; continued if it was stopped), write results/report.html'
+	@echo 'make demo          build, run the demo sweep (half a minute; continued if it was stopped), write $(RESULTS)/report.html'
 	@echo 'jobs/studies.py    the studies: a list; jobs/studies.py NAME... runs them'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow tests: physics, faults, the report in a browser; unit tests under the sanitizers'
 	@echo 'make test-cluster  sweeps under a real Slurm and over hosts that die or are cut off, on this machine (as root, some minutes)'
+	@echo 'make test-debian   SUITE=$(SUITE): make demo and make test in a clean clone on another Debian, in a chroot in $(BUILD)-debian/ (as root)'
 	@echo 'make test-arm      tests of the solver, but for CG, and the networks for 64-bit ARM, run in qemu, in $(BUILD)-arm/'
 	@echo 'make bench         build and run the benchmarks'
 	@echo 'make install       PREFIX=$(PREFIX): program, jobs, analysis scripts, completion in bash; make uninstall'
@@ -48,13 +51,14 @@ help:
 
 configure:
 	@$(call packages,build run)
+	@command -v cmake >/dev/null || { echo 'rodsweep: there is no cmake in the PATH; packages.txt names what is needed' >&2; exit 1; }
 	@$(call configure,default,$(BUILD))
 
 build: configure
 	@cmake --build $(BUILD) -j $(CORES) --target rodsweep
 
 demo: build
-	@jobs/studies.py --build $(BUILD) demo report
+	@jobs/studies.py --build $(BUILD) --results $(RESULTS) demo report
 
 # Seconds and names of the ten slowest tests.
 slowest = echo 'slowest tests, s:'; awk '/^[0-9]+\/[0-9]+ Testing: / { name = $$3 } /^Test time = / { print $$4, name }' \
@@ -76,6 +80,12 @@ test-cluster: configure
 	@$(call packages,cluster)
 	@cmake --build $(BUILD) -j $(CORES) --target program_tests
 	@ctest --preset cluster --test-dir $(BUILD)
+
+# For a release: the README's commands on SUITE, in a chroot that stays in $(BUILD)-debian/ (3 GB).
+test-debian: build
+	@$(call packages,debian)
+	@rm -f $(BUILD)/smoke.h5; $(BUILD)/rodsweep run jobs/smoke.json -o $(BUILD)/smoke.h5 >/dev/null
+	@tests/debian.sh $(SUITE) $(BUILD)-debian/$(SUITE) $(BUILD)/smoke.h5
 
 # Finds what `make test` on x86 does not: two doubles per register, other rounding, another compiler's code.
 test-arm:
@@ -148,4 +158,4 @@ uninstall:
 	echo "Uninstalled from $$prefix."
 
 clean:
-	@for folder in $(BUILD) $(BUILD)-{sanitize,fuzz,tidy,arm,portable,develop,debug}; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done
+	@for folder in $(BUILD) $(BUILD)-{sanitize,fuzz,tidy,arm,portable,develop,debug}; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done; rm -rf $(BUILD)-debian

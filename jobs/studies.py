@@ -10,6 +10,7 @@ import argparse
 import difflib
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -254,16 +255,18 @@ def main():
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("studies", nargs="*", metavar="STUDY", help="run in this order (default: list them)")
     made.add_argument("--build", default="build", metavar="FOLDER", help="where the program was built (default: build)")
+    made.add_argument("--results", default="results", metavar="FOLDER", help="where results go (default: results)")
     made.add_argument("--dry-run", action="store_true", help="print the commands only")
     options = made.parse_args()
-    steps = [step for name in options.studies for step in wanted(name)]
+    folder = shlex.quote(os.path.abspath(options.results)) if options.results != "results" else "results"
+    steps = [re.sub(r"(?<![\w/])results/", lambda _: f"{folder}/", step) for name in options.studies for step in wanted(name)]
     if options.dry_run or not steps:
         print("\n".join(steps) or overview())
         return
+    os.makedirs(os.path.join(ROOT if options.results == "results" else "", options.results, "score"), exist_ok=True)
     os.chdir(ROOT)
     if not os.access(f"{options.build}/rodsweep", os.X_OK):
         sys.exit(f"studies.py: there is no {options.build}/rodsweep: run `make build`")
-    os.makedirs("results/score", exist_ok=True)
     signal.signal(signal.SIGINT, lambda *_: None)    # the command gets it too and ends in its own way
     environment = {**os.environ, "PATH": f"{os.path.abspath(options.build)}:{os.environ['PATH']}"}
     for step in steps:

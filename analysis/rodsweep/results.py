@@ -125,9 +125,10 @@ class Results:
         own, records = [] if by is None else [by], []
         for block in blocks.blocks(self.file, sims, by, newton):
             settings = {name: block.settings[name] for name in own}
-            records += [settings | record for record in blocks.records(self.file, block, guesses, tolerances, newton)]
+            for record in blocks.records(self.file, block, guesses, tolerances, newton):
+                absent = {name: np.nan for name in ("guess", "tolerance", "unreached_solves") if record[name] == ""}
+                records.append(settings | record | absent)
         frame = library("pandas").DataFrame(records, columns=[*own, *blocks.COLUMNS])
-        frame = frame.replace(dict.fromkeys(("guess", "tolerance", "unreached_solves"), ""), np.nan)
         frame = frame.astype({"tolerance": float, "unreached_solves": "Int64"})
         if by is not None and self.file.parameter(by).numeric:
             frame[by] = library("pandas").to_numeric(frame[by])

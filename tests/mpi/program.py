@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -48,7 +49,9 @@ def long_job(name="long", samples=20):
 
 
 def command(ranks, *words):
-    return ([MPIRUN, "-n", str(ranks)] if ranks else []) + [RODSWEEP, *words]
+    recovers = os.environ.get("OMPI_MCA_orte_enable_recovery") == "1" and shutil.which("prterun")    # Open MPI 5
+    launcher = [MPIRUN, *(["--enable-recovery"] if recovers else []), "-n", str(ranks)]
+    return (launcher if ranks else []) + [RODSWEEP, *words]
 
 
 def rodsweep(ranks, *words, timeout=600):

@@ -251,8 +251,8 @@ class Apart(SweepCase):
     def run_apart(self, *words):
         os.makedirs("elsewhere", exist_ok=True)
         program = [RODSWEEP, "run", os.path.abspath(job("apart")), *words]
-        return subprocess.run([MPIRUN, "-n", "2", *program, ":", "-n", "1", "-wdir", os.path.abspath("elsewhere"), *program],
-                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, check=False)
+        start = ["sh", "-c", '[ "$OMPI_COMM_WORLD_RANK" != 2 ] || cd elsewhere; exec "$@"', "sh", *program]
+        return subprocess.run([MPIRUN, "-n", "3", *start], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, check=False)
 
     def test_it_is_refused_and_nothing_is_written(self):
         said = self.run_apart("-o", "common/apart.h5")

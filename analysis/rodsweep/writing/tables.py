@@ -15,7 +15,8 @@ def write_csv(out, frames):
 def write_parquet(out, frames):
     """Writes all frames to a binary file at once, so they must fit in memory; returns the number of rows. Raises
     UserError without pyarrow, which pandas needs."""
-    whole = library("pandas").concat(frames, ignore_index=True)
+    first, *others = frames
+    whole = library("pandas").concat([frame for frame in others if len(frame)] or [first], ignore_index=True)
     try:
         whole.to_parquet(out, index=False)
     except ImportError:

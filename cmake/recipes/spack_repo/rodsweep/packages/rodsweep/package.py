@@ -27,13 +27,13 @@ class Rodsweep(CMakePackage):
     depends_on("hdf5@1.10:+mpi")
     depends_on("petsc@3.18:+mpi+double~complex~int64")
     depends_on("metis@5.1:~int64")
-    depends_on("eigen@3.4:3")
+    depends_on("eigen@3.4:")
     depends_on("boost@1.74:")  # headers
     depends_on("nanoflann@1.4:")
     depends_on("nlohmann-json@3.11:")
-    depends_on("cli11@2.1:2")
+    depends_on("cli11@2.1:")
     depends_on("fmt@9:")
-    depends_on("catch2@2.13:2", type="test")
+    depends_on("catch2@2.13:", type="test")
     depends_on("benchmark@1.7:", when="+bench")
 
     with when("+analysis"):
