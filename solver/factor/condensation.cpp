@@ -4,101 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "solver/rod/joint_kernels.hpp"
+#include "solver/factor/strut_kernels.hpp"
 
 namespace rodsweep {
 namespace {
-
-/// A side of a joint in each lane: dC_s/du and dC/dphi by columns.
-struct LaneSide {
-  Lane shift[3][3], rotation[3][6];
-};
-
-/// A column of C J: its first `rows` entries; the others are zero.
-template <int rows>
-struct Weighted {
-  Lane row[rows];
-};
-
-template <int rows>
-Lane dot(const Lane* column, const Weighted<rows>& weighted) {
-  Lane sum = column[0] * weighted.row[0];
-#pragma GCC unroll 6
-  for (int r = 1; r < rows; ++r) sum += column[r] * weighted.row[r];
-  return sum;
-}
-
-template <int rows>
-Weighted<rows> weighted(const Lane (&c)[6], const Lane* column) {
-  Weighted<rows> out;
-#pragma GCC unroll 6
-  for (int r = 0; r < rows; ++r) out.row[r] = c[r] * column[r];
-  return out;
-}
-
-/// A column of J^T C J' from `column`, the same column of C J': calls entry(i, value) for the rows i.
-template <int rows, class Entry>
-void put_column(const LaneSide& side, const Weighted<rows>& column, int first_row, const Entry& entry) {
-#pragma GCC unroll 6
-  for (int i = 0; i < 6; ++i)
-    if (i >= first_row)
-      entry(i, i < 3 ? dot<3>(side.shift[i], Weighted<3>{column.row[0], column.row[1], column.row[2]})
-                     : dot<rows>(side.rotation[i - 3], column));
-}
-
-/// out = J^T C J', by columns.
-void product(const LaneSide& side, const Lane (&c)[6], const LaneSide& other, LaneVector6 (&out)[6]) {
-#pragma GCC unroll 1
-  for (int j = 0; j < 3; ++j) {
-    put_column(side, weighted<3>(c, other.shift[j]), 0, [&](int i, const Lane& value) { out[j][i] = value; });
-    put_column(side, weighted<6>(c, other.rotation[j]), 0, [&](int i, const Lane& value) { out[3 + j][i] = value; });
-  }
-}
-
-/// out += J^T C J.
-void add_square(const LaneSide& side, const Lane (&c)[6], LaneBlock& out) {
-#pragma GCC unroll 3
-  for (int j = 0; j < 3; ++j) {
-    put_column(side, weighted<3>(c, side.shift[j]), j, [&](int i, const Lane& value) { out[i][j] += value; });
-    put_column(side, weighted<6>(c, side.rotation[j]), 3 + j,
-               [&](int i, const Lane& value) { out[i][3 + j] += value; });
-  }
-}
-
-struct LaneJoint {
-  Lane c[6];
-  LaneSide before, after;
-};
-
-void put(const JointJacobian& jacobian, bool is_b, int lane, LaneSide& out) {
-  const JointSide side(jacobian, is_b);
-  for (int j = 0; j < 3; ++j) {
-    for (int r = 0; r < 3; ++r) out.shift[j][r][lane] = side.shift[j][r];
-    for (int r = 0; r < 6; ++r) out.rotation[j][r][lane] = side.rotation[j][r];
-  }
-}
-
-/// A symmetric block of one lane, by columns.
-void add_symmetric(const LaneBlock& from, int lane, Block6& to) {
-  for (int c = 0; c < 6; ++c)
-    for (int r = 0; r < 6; ++r) to.column[c][r] += from[std::max(r, c)][std::min(r, c)][lane];
-}
-void add(const LaneVector6 (&columns)[6], int lane, Block6& to) {
-  for (int c = 0; c < 6; ++c)
-    for (int r = 0; r < 6; ++r) to.column[c][r] += columns[c][r][lane];
-}
-void add_transposed(const LaneVector6 (&columns)[6], int lane, Block6& to) {
-  for (int c = 0; c < 6; ++c)
-    for (int r = 0; r < 6; ++r) to.column[r][c] += columns[c][r][lane];
-}
-
-/// f_to -= (columns)^T f.
-void subtract_transposed(const LaneVector6 (&columns)[6], const LaneVector6& f, LaneVector6& to) {
-#pragma GCC unroll 6
-  for (int c = 0; c < 6; ++c)
-#pragma GCC unroll 6
-    for (int r = 0; r < 6; ++r) to[c] -= columns[c][r] * f[r];
-}
 
 bool has_positive_mass(const Segment& segment) {
   return segment.is_static ||
@@ -188,12 +97,13 @@ LaneMask Condensation::eliminate(const Batch& batch) {
     for (int lane = 0; lane < lane_width; ++lane) {
       const Strut& of = strut(batch, lane);
       const int k = of.joints[at(joint)];
-      for (int i = 0; i < 6; ++i) out.c[i][lane] = k < 0 ? 0 : stiffness_[at(k)][i];
-      if (k < 0) continue;  // no joint
+      if (k < 0) {  // no joint
+        out.clear(lane);
+        continue;
+      }
       const bool b_is_before = joint > 0 ? rod_->joints[at(k)].b == of.segments[at(joint - 1)]
                                          : rod_->joints[at(k)].a == of.segments.front();
-      put(linearization_->joints[at(k)], b_is_before, lane, out.before);
-      put(linearization_->joints[at(k)], !b_is_before, lane, out.after);
+      out.set(lane, linearization_->joints[at(k)], b_is_before, stiffness_[at(k)]);
     }
   };
   LaneMask positive = Lane{} < 1;
@@ -243,42 +153,34 @@ LaneMask Condensation::eliminate(const Batch& batch) {
     }
     s = next;
   }
-  for (int lane = 0; lane < batch.count; ++lane) {
-    const Places& to = places_[batch.first_strut + at(lane)];
-    if (to.begin >= 0) add_symmetric(begin, lane, matrix_.blocks[at(to.begin)]);
-    if (to.end >= 0) add_symmetric(s, lane, matrix_.blocks[at(to.end)]);
-    if (to.end_begin >= 0) {
-      add(to_begin, lane, matrix_.blocks[at(to.end_begin)]);
-      add_transposed(to_begin, lane, matrix_.blocks[at(to.begin_end)]);
-    }
-  }
+  for (int lane = 0; lane < batch.count; ++lane) add(places_[batch.first_strut + at(lane)], lane, begin, s, to_begin);
   return positive;
+}
+
+void Condensation::add(const Places& to, int lane, const LaneBlock& begin, const LaneBlock& end,
+                       const LaneVector6 (&end_begin)[6]) {
+  if (to.begin >= 0) add_symmetric(begin, lane, matrix_.blocks[at(to.begin)]);
+  if (to.end >= 0) add_symmetric(end, lane, matrix_.blocks[at(to.end)]);
+  if (to.end_begin < 0) return;
+  add_columns(end_begin, lane, matrix_.blocks[at(to.end_begin)]);
+  add_transposed(end_begin, lane, matrix_.blocks[at(to.begin_end)]);
 }
 
 void Condensation::add_links() {
   LaneJoint joint{};
-  for (std::size_t i = 0; i < graph_.links.size(); i += lane_width) {
-    const std::size_t count = std::min<std::size_t>(lane_width, graph_.links.size() - i);
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      const auto k = at(graph_.links[i + lane]);
-      for (int r = 0; r < 6; ++r) joint.c[r][lane] = stiffness_[k][r];
-      put(linearization_->joints[k], false, static_cast<int>(lane), joint.before);
-      put(linearization_->joints[k], true, static_cast<int>(lane), joint.after);
+  const int links = static_cast<int>(graph_.links.size());
+  for (int first = 0; first < links; first += lane_width) {
+    const int count = std::min(lane_width, links - first);
+    for (int lane = 0; lane < count; ++lane) {
+      const std::size_t k = at(graph_.links[at(first + lane)]);
+      joint.set(lane, linearization_->joints[k], false, stiffness_[k]);
     }
     LaneBlock a{}, b{};
     LaneVector6 b_a[6];
     add_square(joint.before, joint.c, a);
     add_square(joint.after, joint.c, b);
     product(joint.after, joint.c, joint.before, b_a);
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      const Places& to = places_[graph_.struts.size() + i + lane];
-      const auto l = static_cast<int>(lane);
-      if (to.begin >= 0) add_symmetric(a, l, matrix_.blocks[at(to.begin)]);
-      if (to.end >= 0) add_symmetric(b, l, matrix_.blocks[at(to.end)]);
-      if (to.end_begin < 0) continue;
-      add(b_a, l, matrix_.blocks[at(to.end_begin)]);
-      add_transposed(b_a, l, matrix_.blocks[at(to.begin_end)]);
-    }
+    for (int lane = 0; lane < count; ++lane) add(places_[graph_.struts.size() + at(first + lane)], lane, a, b, b_a);
   }
 }
 

@@ -73,6 +73,7 @@ class Condensation {
 
   const Strut& strut(const Batch& batch, int lane) const;
   LaneMask eliminate(const Batch& batch);
+  void add(const Places& to, int lane, const LaneBlock& begin, const LaneBlock& end, const LaneVector6 (&end_begin)[6]);
   void add_links();
   void condense(const Batch& batch);
   void expand(const Batch& batch);
