@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct StoredTask {
-  Plan whole;  ///< of the file
-  Plan alone;  ///< of the task
+  Plan whole;   ///< of the file
+  Plan single;  ///< of the task
 };
 
 /// Throws FileError, with advice, if the file does not have the task, is itself a rerun, or is of another machine.
@@ -31,8 +31,8 @@ StoredTask stored_task(const fs::path& file, std::int64_t task, int trajectory_e
     throw FileError("{} has no task {}: must be from 0 to {}", file.native(), task, summary.tasks - 1);
   Plan whole = stored_plan(summary);
   check_same_tasks(file, whole);
-  Plan alone = whole.alone(task, trajectory_every);
-  return {std::move(whole), std::move(alone)};
+  Plan single = whole.single_task(task, trajectory_every);
+  return {std::move(whole), std::move(single)};
 }
 
 /// The new file, beside the old one unless the user chose another.
@@ -45,7 +45,7 @@ fs::path output_of(const Options& options, const char* what, Console& console) {
 }
 
 /// None, with a note, if a signal stopped it.
-std::optional<TaskResult> run_alone(TaskRunner run, const StopSignal& signal, Console& console) {
+std::optional<TaskResult> run_task_here(TaskRunner run, const StopSignal& signal, Console& console) {
   TaskResult result = run(0, [&] { return signal.received() != 0; });
   if (result.outcome != TaskOutcome::pending) return result;
   console.note(fmt::format("stopped early by {}; nothing was written", signal_cause(signal.received())));
@@ -65,7 +65,7 @@ ExitCode code_of(TaskOutcome outcome) { return outcome == TaskOutcome::ok ? Exit
 ExitCode execute(const RerunOptions& options, Console& console) {
   const StopSignal signal;
   const StoredTask stored = stored_task(options.file, options.task, options.trajectory_every);
-  const Plan& plan = stored.alone;
+  const Plan& plan = stored.single;
   const fs::path output = output_of(options, "task", console);
   Provenance provenance = provenance_of_this_process(options.command);
   provenance.job = plan.job().path.native();
@@ -79,7 +79,7 @@ ExitCode execute(const RerunOptions& options, Console& console) {
     file.close();
     file.check_written();
   };
-  const auto result = run_alone(TaskRunner(plan, write), signal, console);
+  const auto result = run_task_here(TaskRunner(plan, write), signal, console);
   if (!result) return ExitCode::stopped;
   console.result(fmt::format("{}\nresults: {}\nnext: {}", result_text(options.task, *result), output.native(),
                              compare_line(options.program, options.file, output)));
@@ -96,7 +96,7 @@ ExitCode execute(const SystemsOptions& options, Console& console) {
   hooks.observe = [&](const Rod& rod, const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
     if (at.step % options.every == 0 && (at.newton == 0 || !options.first)) systems.add(rod, system, at, solution);
   };
-  const auto result = run_alone(TaskRunner(stored.alone, nothing, hooks), signal, console);
+  const auto result = run_task_here(TaskRunner(stored.single, nothing, hooks), signal, console);
   if (!result) return ExitCode::stopped;
   if (systems.count() == 0)
     throw FileError("task {} of {} solves no linear system{}", options.task, options.file.native(),

@@ -113,7 +113,7 @@ void Plan::add(const Task& task) {
     throw too_large(job_);
 }
 
-Plan Plan::alone(std::int64_t index, int trajectory_every) const {
+Plan Plan::single_task(std::int64_t index, int trajectory_every) const {
   Plan plan(*this);
   plan.task_alone_ = index;
   for (const ParameterColumn& column : parameters()) plan.kept_.push_back(column.path);

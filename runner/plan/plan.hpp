@@ -95,7 +95,7 @@ class Plan {
 
   /// A plan with one of this plan's tasks, and a trajectory frame every `trajectory_every` steps. The task keeps its
   /// point, sample and guess, and so its values and results; its rows begin at 0.
-  Plan alone(std::int64_t index, int trajectory_every) const;
+  Plan single_task(std::int64_t index, int trajectory_every) const;
   const std::optional<std::int64_t>& task_alone() const { return task_alone_; }  ///< its index in the whole plan
 
   const Job& job() const { return job_; }

@@ -13,8 +13,8 @@ def matrix_market(system, stem):
     comment = f"rod {system.rod}, step {system.step}, Newton iteration {system.newton}, dt {system.dt_s:.17g} s"
     paths = [f"{stem}{ending}.mtx" for ending in ("", "_b", "_x")]
     for path, matrix in zip(paths, (system.A.tocoo(), system.b[:, None], system.x[:, None])):
-        with outputs.whole(path) as part:
-            scipy.io.mmwrite(part, matrix, comment=comment, precision=17,
+        with outputs.whole(path) as part, open(part, "wb") as file:    # SciPy itself ignores a full disk
+            scipy.io.mmwrite(file, matrix, comment=comment, precision=17,
                              symmetry="symmetric" if path == paths[0] else "general")
     return paths
 

@@ -211,7 +211,8 @@ TEST_CASE("what is no finished data set is refused with what to do") {
   CHECK_THAT(refusal_of(folder / "sweep.h5"),
              EndsWith("holds the results of a sweep, not a data set: give the file of a job of kind \"dataset\""));
 
-  ResultsFile::create(folder / "task.h5", plan_of(ragged_job()).alone(1, 1), test_provenance(), MPI_COMM_SELF).close();
+  ResultsFile::create(folder / "task.h5", plan_of(ragged_job()).single_task(1, 1), test_provenance(), MPI_COMM_SELF)
+      .close();
   CHECK_THAT(refusal_of(folder / "task.h5"),
              EndsWith("holds only one task of a data set, from `rodsweep rerun`: give the file of the data set"));
 

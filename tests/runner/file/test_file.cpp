@@ -208,7 +208,7 @@ TEST_CASE("contacts have columns where rods touch in any task, also in the file 
   const TemporaryFolder folder;
   const Plan plan = plan_of(with("/scene/contact", R"({"grid": ["none", {}]})")), none = plan_of(small_job());
   make_file(folder / "some.h5", plan, 2);
-  make_file(folder / "alone.h5", plan.alone(0, 0), 1);
+  make_file(folder / "alone.h5", plan.single_task(0, 0), 1);
   make_file(folder / "none.h5", none, 1);
   for (const char* path : {"/tasks/penetration", "/steps/contacts", "/steps/penetration", "/steps/contact_residual"}) {
     CHECK(holds(folder / "some.h5", path));

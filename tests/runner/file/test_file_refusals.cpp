@@ -229,7 +229,7 @@ TEST_CASE("resume with a program that expands the job differently is refused wit
 TEST_CASE("the file of one task run again is not continued") {
   const TemporaryFolder folder;
   const Plan plan = plan_of(full_job());
-  make_file(folder / "one.h5", plan.alone(3, 1), 1);
+  make_file(folder / "one.h5", plan.single_task(3, 1), 1);
   CHECK(inspect(folder / "one.h5").rerun_of_task == 3);
   CHECK_THAT(resume_refusal(folder / "one.h5", plan),
              ContainsSubstring("holds only one task of a sweep, from `rodsweep rerun`"));

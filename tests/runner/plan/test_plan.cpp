@@ -140,7 +140,7 @@ TEST_CASE("an object that is swept against a word has a column that says which i
         std::vector<std::string>{"none", "sweeps 9", "sweeps 9"});
   CHECK_FALSE(has_column(contact("{}"), "scene.contact"));
   CHECK_FALSE(has_column(contact(R"({"friction": {"grid": [0.3, 0.6]}})"), "scene.contact"));
-  CHECK(texts(plan.alone(1, 0), "scene.contact") == std::vector<std::string>{"friction 0.3"});
+  CHECK(texts(plan.single_task(1, 0), "scene.contact") == std::vector<std::string>{"friction 0.3"});
 
   const Plan wind = plan_of(with("/scene/wind", R"({"grid": [{"mean_m_s": [8, 0, 0], "turbulence_m_s": 2}, "none"]})"));
   CHECK(texts(wind, "scene.wind") == std::vector<std::string>{"mean_m_s [8,0,0], turbulence_m_s 2", "none"});
@@ -286,7 +286,7 @@ TEST_CASE("a task alone keeps its point, sample, guess, values and seed, and has
   job["scene"]["segments"] = grid({4, 6});
   job["guesses"] = Json::parse(R"(["zero", {"oracle": {"error": {"grid": [0.1, 0.2]}}}])");
   const Plan whole = plan_of(job);
-  const Plan one = whole.alone(11, 4);
+  const Plan one = whole.single_task(11, 4);
   REQUIRE(one.size() == 1);
   CHECK(one.task_alone() == 11);
   const Task &there = whole.task(11), &here = one.task(0);
@@ -310,7 +310,7 @@ TEST_CASE("a task alone has the columns of the whole plan, also of guesses that 
   Json job = small_job();
   job["guesses"] = Json::parse(R"(["zero", {"oracle": {"error": {"grid": [0.1, 0.2]}}}])");
   const Plan whole = plan_of(job);
-  const auto columns = whole.parameters(), alone = whole.alone(1, 1).parameters();
+  const auto columns = whole.parameters(), alone = whole.single_task(1, 1).parameters();
   CHECK(std::equal(columns.begin(), columns.end(), alone.begin(), alone.end(),
                    [](const ParameterColumn& a, const ParameterColumn& b) { return a.path == b.path; }));
 }
