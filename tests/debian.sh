@@ -35,6 +35,7 @@ unshare --mount --propagation private bash -euo pipefail -c '
   exec chroot . env -i HOME=/root TERM="${TERM:-dumb}" LANG=C.UTF-8 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
     CCACHE_NOHASHDIR=1 bash -euo pipefail -c '\''
       export DEBIAN_FRONTEND=noninteractive
+      echo "Acquire::Check-Valid-Until false;" >/etc/apt/apt.conf.d/old-mirrors
       { apt-get update && apt-get dist-upgrade --yes; } >/tmp/upgrade.log 2>&1 || { tail /tmp/upgrade.log >&2; exit 1; }
       git config --global --replace-all safe.directory "*"
       rm -rf /root/rodsweep
