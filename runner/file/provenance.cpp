@@ -32,6 +32,14 @@ std::string hdf5_version() {
   return fmt::format("HDF5 {}.{}.{}", major, minor, release);
 }
 
+std::string eigen_version() {
+#ifdef EIGEN_VERSION_STRING  // 5 and newer
+  return EIGEN_VERSION_STRING;
+#else
+  return fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
+#endif
+}
+
 /// "AVX-512 on Intel(R) Xeon(R) Gold 6248": the vector instructions of the build, and this machine's processor.
 std::string processor() {
 #if defined(__AVX512F__)
@@ -60,9 +68,9 @@ std::string library_versions() {
 #else
   const char* compiler = "g++ " __VERSION__;
 #endif
-  return fmt::format("rodsweep {}; {}; PETSc {}.{}.{}; {}; Eigen {}.{}.{}; {}; {}", RODSWEEP_VERSION, mpi_version(),
-                     PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR, hdf5_version(),
-                     EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, compiler, processor());
+  return fmt::format("rodsweep {}; {}; PETSc {}.{}.{}; {}; Eigen {}; {}; {}", RODSWEEP_VERSION, mpi_version(),
+                     PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR, hdf5_version(), eigen_version(),
+                     compiler, processor());
 }
 
 std::string host_name() {

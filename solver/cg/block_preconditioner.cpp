@@ -23,7 +23,8 @@ class PointBlocks : public BlockPreconditioner {
       for (int c = 0; c < 6; ++c) store6(entries.col(c).data(), block.column[c]);
       const Eigen::LLT<Matrix6> factor(entries);
       if (factor.info() != Eigen::Success) return false;
-      const Matrix6 inverse = factor.solve(Matrix6::Identity());
+      Matrix6 inverse = Matrix6::Identity();
+      factor.solveInPlace(inverse);
       for (int c = 0; c < 6; ++c) inverse_[at(row)].column[c] = load6(inverse.col(c).data());
     }
     return true;
