@@ -108,12 +108,13 @@ void ContactFinder::let_rebound(const Scene& scene) {
     if (!contact.impulse.isZero(0)) continue;
     Contact at_start = contact, coasting = contact, free = contact;
     const double end = follow(free, free_, end_s_).width;
-    if (end >= 0) continue;
     const double start = follow(at_start, start_, start_s_).width;
     const double coasted = follow(coasting, coasting_, end_s_).width;
-    const Impact impact{true, std::max(0.0, start), coasted - end};
-    if (rebound(restitution_, start - coasted, impact.gap, impact.acceleration, two_steps_) > 0)
-      contact.impact = impact;
+    Impact& impact = contact.impact;
+    impact.gap = std::max(0.0, start);
+    impact.acceleration = coasted - end;
+    impact.possible = end < start - coasted + impact.acceleration &&
+                      rebound(restitution_, start - coasted, impact.gap, impact.acceleration, two_steps_) > 0;
   }
 }
 

@@ -15,8 +15,10 @@
 // others have one, at their closest points. A penetration at p is allowed, except for a share that is corrected
 // (ContactSettings::recovery), at most a hundredth of a radius per step: correcting positions adds a velocity.
 //
-// With a coefficient of restitution e, a contact whose gap would close by p* has an impact in this step, unless it pressed
-// in the last one: instead of the gap, the velocity at which the bodies separate has a lower limit (rebound.hpp).
+// With a coefficient of restitution e, a contact whose gap would close in this step has an impact, unless it pressed in
+// the last one: instead of the gap, the velocity at which the bodies separate has a lower limit (rebound.hpp). It also has
+// one if only the impacts of others close it and it would have closed by the next step: of a rod that falls flat, one end
+// may reach the floor first.
 #pragma once
 
 #include <vector>
@@ -27,7 +29,8 @@ namespace rodsweep {
 
 /// Of an impact with restitution, see rebound.hpp [m].
 struct Impact {
-  bool happens = false;
+  bool possible = false;  ///< the bodies separate if they meet in this step
+  bool happens = false;   ///< they would meet
   double gap = 0, acceleration = 0;
   double meeting = 0;  ///< how much nearer they come without impulses, with the response of the joints
   double limit = 0;    ///< of the rebound in this Newton iteration

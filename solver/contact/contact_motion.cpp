@@ -159,6 +159,10 @@ Matrix3 ContactMotion::mobility(const BodyPoint& a, const BodyPoint& b) const {
   return w - cross - cross.transpose();
 }
 
+bool ContactMotion::is_single(int body) const {
+  return body >= 0 && bodies_.body(body).is_free && scene_.rods[at(bodies_.body(body).rod)].joints.empty();
+}
+
 void ContactMotion::push(const BodyPoint& point, const Vector3& impulse) {
   if (point.body < 0) return;
   const Body& of = bodies_.body(point.body);

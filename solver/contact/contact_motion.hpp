@@ -51,6 +51,9 @@ class ContactMotion {
   /// The part of an impulse's moment that turns a segment in the balance of momentum as turned() does.
   Vector3 turning(int segment, const Vector3& moment) const;
 
+  /// Whether a body moves without joints.
+  bool is_single(int body) const;
+
   /// What a rod gets of an impulse.
   double share(int rod) const { return rods_[at(rod)].share; }
 

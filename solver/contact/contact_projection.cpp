@@ -122,7 +122,7 @@ void ContactProjection::linearise() {
     }
     linear.size = finder_.bodies().smaller_radius(contact.a, contact.b);
     linear.is_active = false;
-    if (contact.impact.happens && fresh_) {
+    if (contact.impact.possible && fresh_) {
       contact.impact.meeting = -contact.normal.dot(slip(linear));
       contact.impact.limit = HUGE_VAL;
     }
@@ -199,12 +199,14 @@ bool ContactProjection::activate() {
   const std::size_t before = active_.size();
   const double overlap = before == 0 ? 0 : accurate * settings_.tolerance;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const Contact& contact = contacts_[c];
+    Contact& contact = contacts_[c];
     Linear& at = linear_[c];
     if (at.is_active) continue;
     const double gap = at.gap + contact.normal.dot(motion_.of(at.a) - motion_.of(at.b));
     if (contact.impulse.isZero(0) && gap >= -overlap * at.size) continue;
     at.is_active = true;
+    if (contact.impact.possible && !std::exchange(contact.impact.happens, true))
+      at.gap = separation_short_of_rebound(c);
     const Matrix3 frame = contact_frame(contact.normal);
     const Vector3 impulse = frame.transpose() * contact.impulse;
     Vector3 start = frame.transpose() * slip(at);

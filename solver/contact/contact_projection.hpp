@@ -114,6 +114,7 @@ class ContactProjection {
   bool activate();
   void couple();
   void press();
+  void press_single(const Active& active);
   double sweep();
   double relax(Active& active);
   void change(Active& active, const Vector3& impulse);

@@ -70,15 +70,30 @@ void ContactProjection::couple() {
   }
 }
 
-// Applies the last step's impulses to contacts that persist, unless the balance of momentum already includes them.
+// Applies the last step's impulses to contacts that persist, unless the balance of momentum already includes them: on
+// rods without joints Newton's iteration does not act.
 void ContactProjection::press() {
   if (!std::exchange(fresh_, false)) return;
   for (Active& active : active_) {
     const Vector3 pressed = active.law.admissible(active.impulse);
-    if (!keeps_balance_) active.impulse = active.settled = Vector3::Zero();
+    if (keeps_balance_)
+      press_single(active);
+    else
+      active.impulse = active.settled = Vector3::Zero();
     change(active, pressed);
   }
   if (motion_.needs_settling()) settle();
+}
+
+void ContactProjection::press_single(const Active& active) {
+  const Vector3 impulse = active.frame * active.impulse;
+  const auto press = [this](const BodyPoint& on, int point, const Vector3& own, const Vector3& in_world) {
+    if (!motion_.is_single(on.body)) return;
+    push(point, own);
+    motion_.push(on, in_world);
+  };
+  press(linear_[active.contact].a, active.a, active.impulse, impulse);
+  press(linear_[active.contact].b, active.b, -active.impulse, -impulse);
 }
 
 void ContactProjection::change(Active& active, const Vector3& impulse) {

@@ -20,65 +20,6 @@ Scene exact(Scene scene) {
   return scene;
 }
 
-TEST_CASE(
-    "rods that meet head-on go on together or part with the coefficient of restitution, and keep their momentum") {
-  RodParameters heavy;
-  heavy.density_kg_m3 = 3000;
-  for (const double restitution : {0.0, 0.1, 0.5, 1.0}) {
-    Scene scene = exact(contact_scene(
-        {capsule({0, 0, -1}, {0, 0, 1}, {2, 0, 0}, heavy), capsule({2.5 * r, 0, -1}, {2.5 * r, 0, 1}, {-1, 0, 0})}));
-    scene.contact->restitution = restitution;
-    Touching t(scene, 0.01);
-    t.run(5);
-    const double common = (3 * 2 - 1) / 4.0, apart = restitution * 3;
-    const double expected[] = {common - apart / 4, common + apart * 3 / 4};
-    for (int rod = 0; rod < 2; ++rod) {
-      CHECK((t.scene.rods[rod].velocity[0] - Vector3(expected[rod], 0, 0)).norm() < 1e-6);
-      CHECK(t.scene.rods[rod].angular_velocity[0].norm() < 1e-6);
-    }
-    if (restitution == 0) CHECK(test::nearest(t.scene) == Approx(1).epsilon(1e-6));
-  }
-}
-
-/// Heights of a capsule's centre above its radius, dropped on a floor.
-std::vector<double> bouncing(double from_m, double restitution, double dt, Integrator integrator, bool balance,
-                             double duration_s) {
-  const Vector3 at(0, r + from_m, 0), along(0.5, 0, 0);
-  Scene scene = contact_scene({capsule(at - along, at + along, {0, 0, 0})}, 0.3, {0, -9.81, 0});
-  scene.obstacles = {HalfSpace{}};
-  scene.contact->restitution = restitution;
-  Touching t(scene, dt, integrator, balance);
-  std::vector<double> heights;
-  for (double s = 0; s < duration_s; s += dt) {
-    t.step();
-    heights.push_back(t.scene.rods[0].position[0].y() - r);
-  }
-  return heights;
-}
-
-TEST_CASE("a capsule rises by the square of the restitution after each bounce, and rests when it is due") {
-  for (const Integrator integrator : {Integrator::euler, Integrator::bdf2})
-    for (const double restitution : {0.0, 0.6, 0.9, 1.0})
-      for (const double dt : {2e-3, 5e-3, 1e-2})
-        for (const double from_m : {0.5, 0.4712}) {
-          const double rest_s = std::sqrt(2 * from_m / 9.81) * (1 + restitution) / (1 - restitution);
-          const bool balance = restitution == 0 && from_m == 0.5;
-          const std::vector<double> heights =
-              bouncing(from_m, restitution, dt, integrator, balance, std::min(8.0, 1.3 * rest_s));
-          INFO("BDF2 " << (integrator == Integrator::bdf2) << ", e " << restitution << ", dt " << dt << ", from "
-                       << from_m);
-          double apex = from_m, moved_s = 0;
-          for (std::size_t i = 1; i + 1 < heights.size(); ++i) {
-            if (std::abs(heights[i + 1] - heights[i]) > 2e-6) moved_s = dt * static_cast<double>(i + 1);
-            if (!(heights[i] >= heights[i - 1] && heights[i] > heights[i + 1])) continue;
-            apex *= restitution * restitution;
-            if (apex > 600 * dt * dt) CHECK(heights[i] == Approx(apex).epsilon(0.01));  // 20 steps of flight
-          }
-          CHECK(*std::min_element(heights.begin(), heights.end()) > -1e-4);
-          if (restitution < 1) CHECK(moved_s == Approx(rest_s).epsilon(dt < 0.01 ? 0.1 : 0.2));
-        }
-}
-
 /// One step of a capsule along y that hits a capsule along z at a distance `arm` from its centre.
 Scene after_impact(double arm, double dt) {
   Touching t(exact(contact_scene({capsule({0, -0.5, arm}, {0, 0.5, arm}, {1, 0, 0}),
