@@ -211,7 +211,7 @@ TEST_CASE("resume with a program that expands the job differently is refused wit
     CHECK_THAT(resume_refusal(made.path, made.plan),
                ContainsSubstring("scene.length_m of task 4 is") &&
                    ContainsSubstring(is_known ? "the revision is the same" : "expands the job differently"));
-    hdf5::write_text_row(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/revision", 0, "0123456789ab");
+    hdf5::RowDataset(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/revision").put_text(0, "0123456789ab");
     CHECK_THAT(resume_refusal(made.path, made.plan),
                ContainsSubstring("expands the job differently (revision 0123456789ab): scene.length_m of task 4 is"));
   }
