@@ -8,7 +8,7 @@ variable of a dataset ("units", "long_name").
 
 import numpy as np
 
-from rodsweep.reading import blocks, groups, measures, tidy
+from rodsweep.reading import blocks, groups, measures, tidy, trajectory
 from rodsweep.reading.errors import SweepFileError, UserError, library, not_found
 from rodsweep.reading.hdf5 import as_text
 from rodsweep.reading.sweepfile import SweepFile
@@ -86,6 +86,10 @@ class Results:
     def steps(self, columns=None, where=()):
         """A row per time step."""
         return self._frame("steps", columns, where)
+
+    def trajectory(self, task):
+        """The recorded frames of a task, with the forces of its joints (rodsweep.reading.trajectory)."""
+        return trajectory.of_task(self.file, task)
 
     def blocks(self, level, columns=None, where=(), rows=ROWS):
         """Yields the same frame in parts of about `rows` rows, so memory use does not grow with the file."""

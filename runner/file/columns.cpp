@@ -33,6 +33,7 @@ std::vector<Column> all_columns() {
   using Steps = R::Steps;
   using Trajectories = R::Trajectories;
   using Segments = R::Segments;
+  using Joints = R::Joints;
   using Systems = R::Systems;
   using Timing = R::Timing;
   const std::vector<Axis> none, guess{Axis::guess}, ladder{Axis::guess, Axis::tolerance}, xyz{Axis::xyz},
@@ -48,6 +49,9 @@ std::vector<Column> all_columns() {
   const auto frames = columns_of(Rows::frame_segment, &R::trajectories);
   const auto frame_axis = columns_of(Rows::task, &R::trajectories);
   const auto segments = columns_of(Rows::segment, &R::trajectories, &Trajectories::segments);
+  const auto force_steps = columns_of(Rows::force_step, &R::steps);
+  const auto frame_joints = columns_of(Rows::frame_joint, &R::trajectories);
+  const auto joints = columns_of(Rows::joint, &R::trajectories, &Trajectories::joints);
   const auto systems = columns_of(Rows::system, &R::systems);
   const auto system_segments = columns_of(Rows::system_segment, &R::systems);
   const auto balanced_segments = columns_of(Rows::balanced_segment, &R::systems);
@@ -139,6 +143,12 @@ std::vector<Column> all_columns() {
       contact_steps("/steps/contact_residual", &Steps::contact_residual, none, "1",
                     "largest remaining correction of a contact after the step, over the smaller radius; below "
                     "contact.tolerance: converged; NaN without contact"),
+      force_steps("/steps/clamp_force_n", &Steps::clamp_force_n, xyz, "N",
+                  "force of all held segments on the rods, world frame, without their own weight and inertia; of the "
+                  "impulse of a step over its time"),
+      force_steps("/steps/clamp_moment_nm", &Steps::clamp_moment_nm, xyz, "N m",
+                  "moment of all held segments on the rods about the origin"),
+      force_steps("/steps/obstacle_force_n", &Steps::obstacle_force_n, xyz, "N", "force of all obstacles on the rods"),
 
       frames("/trajectories/position_m", &Trajectories::position_m, xyz, "m", "segment centre"),
       frames("/trajectories/orientation", &Trajectories::orientation, wxyz, "1",
@@ -146,10 +156,22 @@ std::vector<Column> all_columns() {
       frame_axis("/trajectories/first_row", &Trajectories::first_row, frame, "1",
                  "row of the frame's first segment; -1 none"),
       frame_axis("/trajectories/time_s", &Trajectories::time_s, frame, "s", "time of the frame"),
+      frame_joints("/trajectories/joint_position_m", &Trajectories::joint_position_m, xyz, "m",
+                   "point of the joint, half-way between its two sides"),
+      frame_joints("/trajectories/joint_force_n", &Trajectories::joint_force_n, xyz, "N",
+                   "force of the joint's second segment on its first, world frame; along the rod: tension is positive; "
+                   "NaN in the first frame"),
+      frame_joints("/trajectories/joint_moment_nm", &Trajectories::joint_moment_nm, xyz, "N m",
+                   "moment of the second segment on the first about the joint's point, world frame; NaN in the first "
+                   "frame"),
       segments("/trajectories/segments/length_m", &Segments::length_m, none, "m", "length; 0: a wall"),
       segments("/trajectories/segments/radius_m", &Segments::radius_m, none, "m", "radius; 0: a wall"),
       segments("/trajectories/segments/rod", &Segments::rod, none, "1", "rod within the scene, from 0"),
       segments("/trajectories/segments/static", &Segments::is_static, none, "1", "1: static; 0: free"),
+      joints(
+          "/trajectories/joints/first", &Joints::first, none, "1",
+          "first segment of the joint, from 0 within the frame and within the task's rows of /trajectories/segments"),
+      joints("/trajectories/joints/second", &Joints::second, none, "1", "second segment of the joint"),
 
       systems("/systems/step", &Systems::step, none, "1",
               "time step, from 0; -1: a Newton iteration that was not needed"),

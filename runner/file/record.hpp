@@ -94,6 +94,7 @@ struct TaskRecord {
     Cells<double> newton_residual, momentum_residual;
     Cells<std::int32_t> contacts;
     Cells<double> penetration, contact_residual;
+    Cells<double> clamp_force_n, clamp_moment_nm, obstacle_force_n;  ///< [.., 3]
   } steps;
 
   struct Segments {  // [segment]
@@ -101,11 +102,16 @@ struct TaskRecord {
     Cells<std::int16_t> rod;
     Cells<std::int8_t> is_static;
   };
+  struct Joints {                       // [joint]
+    Cells<std::int32_t> first, second;  ///< segments
+  };
   struct Trajectories {
     Cells<double> position_m, orientation;  ///< [frame x segment, 3], [frame x segment, 4] (w, x, y, z)
     Cells<std::int64_t> first_row;          ///< [1, frame] row of the frame in /trajectories
     Cells<double> time_s;                   ///< [1, frame]
+    Cells<double> joint_position_m, joint_force_n, joint_moment_nm;  ///< [frame x joint, 3]
     Segments segments;
+    Joints joints;
   } trajectories;
 
   /// The linear systems of a data set (runner/dataset/stored_systems.hpp).

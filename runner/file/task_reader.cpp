@@ -13,17 +13,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Which optional kinds of rows a file has.
+struct Kinds {
+  bool contact, balance, force, frame_joint;
+
+  explicit Kinds(const hdf5::File& file)
+      : contact(hdf5::exists(file.id(), "/steps/contacts")),
+        balance(hdf5::exists(file.id(), "/systems/segments/free_position_m")),
+        force(hdf5::exists(file.id(), "/steps/clamp_force_n")),
+        frame_joint(hdf5::exists(file.id(), "/trajectories/joint_force_n")) {}
+};
+
 /// Completes a task whose planned columns were read. Throws Damage for numbers of rows that no file has.
-void complete(Task& task, bool contact, bool balance) {
+void complete(Task& task, const Kinds& kinds) {
   constexpr std::int64_t most = 1'000'000'000'000;
   auto& rows = task.rows;
   task.steps = rows[Rows::step].count;
   rows[Rows::task].count = 1;
-  if (contact) rows[Rows::contact_task].count = 1, rows[Rows::contact_step].count = task.steps;
-  if (balance) rows[Rows::balanced_segment].count = rows[Rows::system_segment].count;
-  if (__builtin_mul_overflow(task.frames, task.segments, &rows[Rows::frame_segment].count))
+  if (kinds.contact) rows[Rows::contact_task].count = 1, rows[Rows::contact_step].count = task.steps;
+  if (kinds.balance) rows[Rows::balanced_segment].count = rows[Rows::system_segment].count;
+  if (kinds.force) rows[Rows::force_step].count = task.steps;
+  const std::int64_t joints = kinds.frame_joint ? task.joints : 0;
+  if (__builtin_mul_overflow(task.frames, task.segments, &rows[Rows::frame_segment].count) ||
+      __builtin_mul_overflow(task.frames, joints, &rows[Rows::frame_joint].count))
     throw Damage("a task has rows outside /trajectories");
   rows[Rows::segment].count = task.frames > 0 ? task.segments : 0;
+  rows[Rows::joint].count = task.frames > 0 ? joints : 0;
   for (const RowRange& range : rows)
     if (range.count < 0 || range.count > most) throw Damage("a task has a number of rows that no file can have");
 }
@@ -31,8 +46,7 @@ void complete(Task& task, bool contact, bool balance) {
 /// Reads some thousand tasks at a time. Throws Damage unless the rows of each task follow those of the task before.
 TaskList read_tasks(const hdf5::File& file, std::size_t count) {
   constexpr std::size_t block = 1 << 14;
-  const bool contact = hdf5::exists(file.id(), "/steps/contacts");
-  const bool balance = hdf5::exists(file.id(), "/systems/segments/free_position_m");
+  const Kinds kinds(file);
   std::map<std::string, hdf5::RowDataset> columns;
   const auto column = [&](const std::string& path) -> const hdf5::RowDataset& {
     const auto [place, is_new] = columns.try_emplace(path);
@@ -51,7 +65,7 @@ TaskList read_tasks(const hdf5::File& file, std::size_t count) {
       for (std::size_t i = 0; i < read.size(); ++i) member(read[i]) = values[i];
     });
     for (Task& task : read) {
-      complete(task, contact, balance);
+      complete(task, kinds);
       tasks.add(task);
     }
     visit_planned_columns(holds, [&](const char* path, const char*, auto member) {

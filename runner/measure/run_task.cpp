@@ -52,7 +52,7 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
   const std::unique_ptr<Projection> projection = make_projection(scene, spec, record, *outermost);
   TimeStepper stepper(scene, step_settings(spec.time));
 
-  SimulationLog simulation(task, spec, record, scene);
+  SimulationLog simulation(task, spec, record, scene, stepper);
   for (int step = 0; step < spec.time.steps; ++step) {
     if (hooks.stop()) return false;
     if (simulation.out_of_time(watch.seconds())) break;

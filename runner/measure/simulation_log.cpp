@@ -41,6 +41,24 @@ void log_segments(const Scene& scene, TaskRecord& record) {
   }
 }
 
+/// Logs the segments of each joint.
+void log_ends(const Scene& scene, TaskRecord& record) {
+  std::size_t row = 0;
+  int first = 0;
+  for (const Rod& rod : scene.rods) {
+    for (const Joint& joint : rod.joints) {
+      record.trajectories.joints.first[row] = first + joint.a;
+      record.trajectories.joints.second[row] = first + joint.b;
+      ++row;
+    }
+    first += rod.segment_count();
+  }
+}
+
+void put(const Vector3& vector, Cells<double>& column, std::size_t row) {
+  for (std::size_t i = 0; i < 3; ++i) column(row, i) = vector[static_cast<Eigen::Index>(i)];
+}
+
 constexpr const char* slip = " turned past half a turn, where its torque changes sign: use more segments";
 
 /// The turns in a step [rad] up to which motions were found right: of a body whose spin term is explicit, and of a rod
@@ -64,8 +82,9 @@ void end_late(const TaskSpec& spec, TaskRecord& record, const std::string& where
                   spec.time_limit_s, where.empty() ? "" : " in ", where);
 }
 
-SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene)
-    : task_(task), spec_(spec), record_(record) {
+SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene,
+                             const TimeStepper& stepper)
+    : task_(task), spec_(spec), record_(record), stepper_(stepper) {
   for (const Rod& rod : scene.rods) {
     initial_length_ += rod_length(rod);
     observed_.push_back({Linearization(rod), MomentumBalance(rod), {}});
@@ -75,6 +94,7 @@ SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord&
   record_.tasks.steps_done[0] = 0;
   if (spec_.output.trajectory_every > 0) {
     log_segments(scene, record_);
+    if (spec_.output.forces) log_ends(scene, record_);
     log_frame(0, scene);
   }
 }
@@ -107,10 +127,9 @@ void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepRep
   record_.steps.potential_energy_j[step] = potential;
   record_.steps.elastic_energy_j[step] = elastic;
   record_.steps.gap_energy_j[step] = open;
-  for (std::size_t i = 0; i < 3; ++i) {
-    record_.steps.momentum_kg_m_s(step, i) = momentum[static_cast<Eigen::Index>(i)];
-    record_.steps.angular_momentum_kg_m2_s(step, i) = spin[static_cast<Eigen::Index>(i)];
-  }
+  put(momentum, record_.steps.momentum_kg_m_s, step);
+  put(spin, record_.steps.angular_momentum_kg_m2_s, step);
+  if (spec_.output.forces) log_reactions(step);
   record_.steps.newton_iterations[step] = static_cast<std::int16_t>(report.newton_iterations);
   record_.steps.newton_residual[step] = residual;
   record_.steps.momentum_residual[step] = imbalance;
@@ -214,6 +233,26 @@ void SimulationLog::log_frame(std::size_t frame, const Scene& scene) {
     store(rod.orientation, record_.trajectories.orientation.row(row));
     row += rod.segments.size();
   }
+  if (spec_.output.forces) log_joints(frame, scene);
+}
+
+void SimulationLog::log_reactions(std::size_t step) {
+  const Reactions reactions = stepper_.reactions();
+  put(reactions.clamps.force_n, record_.steps.clamp_force_n, step);
+  put(reactions.clamps.moment_nm, record_.steps.clamp_moment_nm, step);
+  put(reactions.obstacles.force_n, record_.steps.obstacle_force_n, step);
+}
+
+void SimulationLog::log_joints(std::size_t frame, const Scene& scene) {
+  std::size_t row = frame * static_cast<std::size_t>(task_.joints);
+  for (const Rod& rod : scene.rods)
+    for (int k = 0; k < rod.joint_count(); ++k, ++row) {
+      const Joint& joint = rod.joints[at(k)];
+      const Action action = joint_action(rod, k);
+      put((point_on_a(rod, joint) + point_on_b(rod, joint)) / 2, record_.trajectories.joint_position_m, row);
+      put(action.force_n, record_.trajectories.joint_force_n, row);
+      put(action.moment_nm, record_.trajectories.joint_moment_nm, row);
+    }
 }
 
 }  // namespace rodsweep

@@ -20,7 +20,8 @@ void end_late(const TaskSpec& spec, TaskRecord& record, const std::string& where
 class SimulationLog {
  public:
   /// `scene` is the initial state, which is frame 0. All other arguments must outlive this.
-  SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene);
+  SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene,
+                const TimeStepper& stepper);
 
   /// Returns true and ends the task if its time limit has passed.
   bool out_of_time(double elapsed_s);
@@ -41,10 +42,13 @@ class SimulationLog {
   std::string warnings() const;  ///< of a task that ends well
   void fail(TaskOutcome outcome, int step, const std::string& why);
   void log_frame(std::size_t frame, const Scene& scene);
+  void log_reactions(std::size_t step);
+  void log_joints(std::size_t frame, const Scene& scene);
 
   const Task& task_;
   const TaskSpec& spec_;
   TaskRecord& record_;
+  const TimeStepper& stepper_;
   std::vector<Observed> observed_;  ///< by rod
   double initial_length_ = 0;
   bool slipped_ = false;             ///< a joint turned past half a turn

@@ -55,6 +55,9 @@ void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const O
   set(Rows::solve, {output.solves ? task.steps : 0, time.newton_iterations, rods});
   set(Rows::frame_segment, {task.frames, task.segments});
   set(Rows::segment, {task.frames > 0 ? task.segments : 0});
+  set(Rows::force_step, {output.forces ? task.steps : 0});
+  set(Rows::frame_joint, {output.forces ? task.frames : 0, task.joints});
+  set(Rows::joint, {output.forces && task.frames > 0 ? task.joints : 0});
   set(Rows::system, {stored, rods});
   set(Rows::system_segment, {stored, task.segments});
   set(Rows::system_joint, {stored, task.joints});
@@ -82,6 +85,7 @@ void Plan::expand() {
     check_scene(scene, job_);
     if (point % job_.samples == 0 && (built += segment_count(scene)) <= most_built) check_built(scene, job_);
     check_method(values, guess_labels_, job_);
+    check_output(output, values, job_);
     contact = contact || rod_parameters(scene).contact;
     const TimeSpec time = time_spec(values, job_);
     balance = balance || time.balance;

@@ -22,13 +22,24 @@ enum class Rows {
   system,         ///< of a data set: by step, stored Newton iteration, rod
   system_segment,
   system_joint,
-  balanced_segment  ///< as system_segment, in files where any task balances momentum in its steps
+  balanced_segment,  ///< as system_segment, in files where any task balances momentum in its steps
+  force_step,        ///< as step, if forces are recorded
+  frame_joint,       ///< by frame, joint, if forces are recorded
+  joint              ///< of a trajectory with forces
 };
-inline constexpr std::size_t row_kinds = static_cast<std::size_t>(Rows::balanced_segment) + 1;
+inline constexpr std::size_t row_kinds = static_cast<std::size_t>(Rows::joint) + 1;
 
 /// Whether columns of these rows may be missing in a file that has their base kind.
 constexpr bool is_optional(Rows rows) {
-  return rows == Rows::contact_task || rows == Rows::contact_step || rows == Rows::balanced_segment;
+  switch (rows) {
+    case Rows::contact_task:
+    case Rows::contact_step:
+    case Rows::balanced_segment:
+    case Rows::force_step:
+    case Rows::frame_joint:
+    case Rows::joint: return true;
+    default: return false;
+  }
 }
 
 /// Rows [first, first + count) of a dataset.
@@ -48,10 +59,10 @@ struct PerRows : std::array<T, row_kinds> {
 struct RowPlace {
   Rows rows;
   const char *first, *first_meaning;
-  const char *count, *count_meaning;  ///< null: as many as segments, if the task has frames
+  const char *count, *count_meaning;  ///< null: follows from those of segments, joints and frames
   Rows with;                          ///< only in files that have rows of this kind
 };
-inline constexpr std::array<RowPlace, 7> row_places{{
+inline constexpr std::array<RowPlace, 9> row_places{{
     {Rows::step, "/tasks/first_step", "first row in /steps", "/tasks/steps", "rows in /steps", Rows::task},
     {Rows::solve, "/tasks/first_solve", "first row in /solves", "/tasks/solves", "rows in /solves", Rows::task},
     {Rows::frame_segment, "/tasks/first_frame_row", "first row in /trajectories", "/tasks/frames",
@@ -62,6 +73,10 @@ inline constexpr std::array<RowPlace, 7> row_places{{
      "rows in /systems/segments, system by system", Rows::system},
     {Rows::system_joint, "/tasks/first_system_joint", "first row in /systems/joints", "/tasks/system_joints",
      "rows in /systems/joints, system by system", Rows::system},
+    {Rows::frame_joint, "/tasks/first_frame_joint",
+     "first row in the columns of joints in /trajectories, of which each frame has `joints`", nullptr, nullptr,
+     Rows::frame_joint},
+    {Rows::joint, "/tasks/first_joint_row", "first row in /trajectories/joints", nullptr, nullptr, Rows::joint},
 }};
 
 /// What determines the numbers of a task's rows and its cost. Sizes are upper bounds, known before the run.

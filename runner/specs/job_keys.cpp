@@ -36,6 +36,10 @@ Key record() {
                      .from(0, 10000000)
                      .defaults_to(0)
                      .setting(),
+                 boolean_key("forces",
+                             "forces and moments of joints in frames, and those of clamps and obstacles in steps")
+                     .defaults_to(false)
+                     .setting(),
              })
       .defaults_to(Json::object())
       .setting();

@@ -206,10 +206,19 @@ Evaluation evaluation(const Point& point) {
 
 OutputSpec output_spec(const nlohmann::ordered_json& record) {
   const std::string norms = record.value("norms", "one");
-  OutputSpec spec{record["solves"] == "all", norms != "none", norms == "both", record["trajectory_every"].get<int>(),
-                  StoredSystems::none};
+  OutputSpec spec{record["solves"] == "all", norms != "none",
+                  norms == "both",           record["trajectory_every"].get<int>(),
+                  StoredSystems::none,       record["forces"].get<bool>()};
   if (record.contains("systems")) spec.systems = record["systems"] == "all" ? StoredSystems::all : StoredSystems::first;
   return spec;
+}
+
+void check_output(const OutputSpec& output, const Point& point, const JobFiles& job) {
+  if (const Method own = method(point); output.forces && (own == Method::pbd || own == Method::state_network))
+    throw job_error(job.path, "record.forces",
+                    "true is not allowed with solve.method \"{}\", which has no multipliers; must be used with another "
+                    "method, such as \"direct\"",
+                    point.text("solve.method"));
 }
 
 /// Checks settings that are not available for CG on motions, which does not solve for multipliers.

@@ -25,4 +25,7 @@ OutputSpec output_spec(const nlohmann::ordered_json& record);
 /// `labels`: of the job's guesses.
 void check_method(const Point& point, const std::vector<std::string>& labels, const JobFiles& job);
 
+/// Throws JobError if the solve method does not have what is recorded.
+void check_output(const OutputSpec& output, const Point& point, const JobFiles& job);
+
 }  // namespace rodsweep

@@ -103,6 +103,7 @@ struct OutputSpec {
   bool other_norm = true;    ///< also count iterations in the norm that the job doesn't use
   int trajectory_every = 0;  ///< steps between frames; frame 0 is the initial state; 0: no trajectory
   StoredSystems systems = StoredSystems::none;
+  bool forces = false;  ///< of joints in frames, of clamps and obstacles in steps
 
   /// Number of Newton iterations per step, from the first, whose systems are stored.
   int stored_iterations(int newton_iterations) const {

@@ -255,4 +255,20 @@ ContactState ContactProjection::state() {
   return state;
 }
 
+void ContactProjection::add_actions(Action& of_obstacles, Action& of_clamps) const {
+  const ContactBodies& bodies = finder_.bodies();
+  const auto is_free = [&](int body) { return body >= 0 && bodies.body(body).is_free; };
+  const auto add = [&](const BodyPoint& on, int by, const Vector3& impulse) {
+    if (!is_free(on.body) || is_free(by)) return;
+    (finder_.is_obstacle(by) ? of_obstacles : of_clamps)
+        .add(axes_[at(on.body)].centre + on.arm, impulse / (unit_dt_ * unit_dt_));
+  };
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_[c];
+    if (contact.impulse.isZero(0)) continue;
+    add(linear_[c].a, contact.b, contact.impulse);
+    add(linear_[c].b, contact.a, -contact.impulse);
+  }
+}
+
 }  // namespace rodsweep

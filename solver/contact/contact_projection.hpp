@@ -29,6 +29,7 @@
 #include "solver/contact/contact.hpp"
 #include "solver/contact/contact_motion.hpp"
 #include "solver/contact/coulomb_contact.hpp"
+#include "solver/rod/joint_forces.hpp"
 
 namespace rodsweep {
 
@@ -65,6 +66,9 @@ class ContactProjection {
 
   /// The residuals of the contacts in the current state, which is not changed. Sets the rods' contact impulses.
   ContactState state();
+
+  /// Adds what obstacles and held segments exert on free segments, about the origin, in the step that state() ended.
+  void add_actions(Action& of_obstacles, Action& of_clamps) const;
 
  private:
   /// A contact at the current positions.

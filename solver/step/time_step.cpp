@@ -83,6 +83,13 @@ StepReport TimeStepper::step(Projection& projection) {
   return report;
 }
 
+Reactions TimeStepper::reactions() const {
+  Reactions out;
+  for (const Rod& rod : scene_.rods) add_clamp_actions(rod, out.clamps);
+  if (contact_) contact_->add_actions(out.obstacles, out.clamps);
+  return out;
+}
+
 bool TimeStepper::is_lost(Newton balanced) const {
   constexpr double lost_joints = 1e-6, lost_momentum = 0.1;
   if (balanced == Newton::open) return !(newton_residual_ < lost_joints && momentum_residual_ < lost_momentum);

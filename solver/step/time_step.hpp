@@ -41,6 +41,12 @@ struct StepReport {
   double penetration = 0, contact_residual = 0;    ///< at the end of the step, see ContactState
 };
 
+/// What held segments and obstacles exert on the rods, each about the origin. The weight and the inertia of held
+/// segments are not part of it.
+struct Reactions {
+  Action clamps, obstacles;
+};
+
 /// dt_c of a step with h: it converts compliances to alpha~ and multipliers to forces.
 double constraint_dt(double damping_per_s, double h);
 inline double constraint_dt(const Scene& scene, double h) { return constraint_dt(scene.damping_per_s, h); }
@@ -51,6 +57,9 @@ class TimeStepper {
 
   /// Advances the scene by dt. A failed solve ends the step; the state of the rods is invalid then.
   StepReport step(Projection& projection);
+
+  /// Of the last step. In balance, the momentum of the free segments changes by these and the loads.
+  Reactions reactions() const;
 
   int steps_taken() const { return steps_; }
 

@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import rodsweep
 from rodsweep.reading import measures, timings, trajectory
+from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
 ROD = {"type": "bending_rod", "segments": {"grid": [6, 9]}, "length_m": {"uniform": [1, 5]}, "radius_m": 0.05,
@@ -177,6 +178,28 @@ class Program(unittest.TestCase):
         picture = os.path.join(self.folder.name, "rod.png")
         self.assertEqual(self.script("render.py", path, "--task", "2", "--size", "60x40", "-o", picture).strip(), picture)
         self.assertTrue(os.path.exists(self.script("paraview.py", path, "--task", "2").strip()))
+
+    def test_forces_of_joints_are_read_frame_by_frame(self):
+        path = self.run_job("forces", scene=ROD, record={"trajectory_every": 2, "forces": True})
+        with rodsweep.open(path) as results:
+            for task in (0, 2):
+                shown = results.trajectory(task)
+                segments, first = len(shown.length), results.file.h5["tasks/first_frame_joint"][task]
+                np.testing.assert_array_equal(shown.joint_segments(), [[k, k + 1] for k in range(segments - 1)])
+                self.assertTrue(np.isnan(shown.joint_forces(0)).all() and np.isnan(shown.tensions(0)).all())
+                for frame in (1, -1):
+                    np.testing.assert_allclose(shown.joint_positions(frame), shown.ends(frame)[1][:-1], atol=1e-3)
+                    row = first + (frame % 3) * (segments - 1)
+                    force = results.file.h5["trajectories/joint_force_n"][row:row + segments - 1]
+                    np.testing.assert_array_equal(shown.joint_forces(frame), force)
+                    self.assertTrue((np.abs(shown.tensions(frame)) <= np.linalg.norm(force, axis=1)).all())
+                    self.assertGreater(np.abs(shown.joint_moments(frame)[0]).max(), 0)
+            reaction = results.steps(columns=["clamp_force_n_y"])
+            self.assertEqual(reaction.attrs["unit"]["clamp_force_n_y"], "N")
+            self.assertTrue((reaction.clamp_force_n_y.abs() > 0).all())
+        with rodsweep.open(self.run_job("frames", scene=ROD, record={"trajectory_every": 2})) as results, \
+                self.assertRaisesRegex(KeyNotFound, "record.forces"):
+            results.trajectory(0).tensions(-1)
 
     def test_scripts_read_every_kind_of_file(self):
         plane = ("--x", "scene.segments", "--y", "scene.length_m", "--scene", "bending_rod", "--measure")

@@ -296,4 +296,82 @@ TEST_CASE("a motion moves all that is held at its place in every scene, and what
   }
 }
 
+/// What joints do to each segment of a rod, about its centre.
+std::vector<Action> of_joints(const Rod& rod) {
+  std::vector<Action> out(rod.segments.size());
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[at(k)];
+    const auto [force, moment] = joint_action(rod, k);
+    out[at(joint.a)].add(point_on_a(rod, joint) - rod.position[at(joint.a)], force, moment);
+    out[at(joint.b)].add(point_on_b(rod, joint) - rod.position[at(joint.b)], -force, -moment);
+  }
+  return out;
+}
+
+/// m (v - v^) / h + c m v of a segment: what its velocity says that acts on it (free_flight.hpp).
+Vector3 felt_force(const Scene& before, const Scene& now, const Scene& after, std::size_t r, std::size_t s) {
+  const auto v = [&](const Scene& scene) { return scene.rods[r].velocity[s]; };
+  const bool is_euler = after.rods[r].constraint_dt == constraint_dt(after, step_s);
+  const double h = is_euler ? step_s : 2 * step_s / 3;
+  const Vector3 past = is_euler ? v(now) : Vector3((4 * v(now) - v(before)) / 3);
+  return after.rods[r].segments[s].mass * ((v(after) - past) / h + after.damping_per_s * v(after));
+}
+
+TEST_CASE("forces of joints, clamps, obstacles and loads change the momentum of every segment and of every scene") {
+  const SceneFiles files;
+  for (const Json& sample : samples()) {
+    const Scene start = files.scene(with_changes(sample, files.scene(sample)));
+    for (const Way& way : ways) {
+      if (!way.momentum_tolerance) continue;
+      INFO(sample["type"] << " by " << way.name);
+      Simulation simulation(start, {step_s, 40, 1e-11, way.integrator}, way.momentum_tolerance);
+      Scene before = start, now = start;
+      const Scene& after = simulation.scene;
+      int balanced = 0;
+      for (int step = 0; step < 16; ++step) {
+        before = std::exchange(now, after);
+        simulation.step();
+        double scale = 0, lacking = 0;
+        for (const Rod& rod : after.rods) {
+          lacking = std::max(lacking, momentum_residual(rod));
+          for (int k = 0; k < rod.joint_count(); ++k) {
+            const auto [force, moment] = joint_action(rod, k);
+            scale = std::max({scale, force.norm(), moment.norm() / rod.joints[at(k)].length});
+          }
+        }
+        if (!(lacking < 1e-8)) continue;
+        ++balanced;
+        Vector3 felt = Vector3::Zero(), outer = Vector3::Zero();
+        for (std::size_t r = 0; r < after.rods.size(); ++r) {
+          const Rod& rod = after.rods[r];
+          const double per_dt2 = 1 / (rod.constraint_dt * rod.constraint_dt);
+          const std::vector<Action> joints = of_joints(rod);
+          for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+            const Segment& segment = rod.segments[s];
+            if (segment.is_static) continue;
+            Vector3 load = segment.mass * after.gravity_at(after.time_s);
+            for (const PointLoad& at_one : after.loads)
+              if (at(at_one.rod) == r && at(at_one.segment) == s)
+                load += at_one.schedule.at(after.time_s) * at_one.force_n;
+            const Vector6 contact = per_dt2 * rod.outer_impulse(s);
+            const Vector3 force = felt_force(before, now, after, r, s);
+            CHECK((joints[s].force_n + contact.head<3>() + load - force).norm() < 1e-6 * scale);
+            felt += force;
+            outer += load;
+            const Quaternion& q = rod.orientation[s];
+            const Vector3 turn = q.conjugate() * rotation(q, rod.free_orientation[s]);
+            const Vector3 torque =
+                per_dt2 * (q * Vector3(segment.inertia_transverse * turn.x(), segment.inertia_transverse * turn.y(),
+                                       segment.inertia_axial * turn.z()));
+            CHECK((joints[s].moment_nm + contact.tail<3>() - torque).norm() < 1e-6 * scale * segment.length_m);
+          }
+        }
+        const Reactions reactions = simulation.reactions();
+        CHECK((reactions.clamps.force_n + reactions.obstacles.force_n + outer - felt).norm() < 1e-6 * scale);
+      }
+      CHECK(balanced >= 8);
+    }
+  }
+}
+
 }  // namespace rodsweep::law_every_scene

@@ -89,6 +89,7 @@ class Simulation {
     throw std::runtime_error("not at rest after 2000 steps of relaxation");
   }
 
+  Reactions reactions() const { return stepper_.reactions(); }
   Rod& rod() { return scene.rods.front(); }
   double constraint_dt() const { return scene.rods.front().constraint_dt; }
 

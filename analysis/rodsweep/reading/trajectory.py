@@ -48,6 +48,43 @@ class Trajectory:
         centre, half = self.centres(frame), 0.5 * self.length[:, None] * self.axes(frame)
         return centre - half, centre + half
 
+    def joint_segments(self):
+        """[joint, 2] numbers of the segments that a joint connects, as the program recorded them."""
+        joints = self._joints()
+        first = int(self.h5["/tasks/first_joint_row"][self.task])
+        return np.stack([self.h5[f"/trajectories/joints/{name}"][first:first + joints] for name in ("first", "second")],
+                        axis=1)
+
+    def joint_positions(self, frame):
+        """[joint, 3] m"""
+        return self._joint_rows("joint_position_m", frame)
+
+    def joint_forces(self, frame):
+        """[joint, 3] N, of the second segment on the first, in the world; NaN in the first frame."""
+        return self._joint_rows("joint_force_n", frame)
+
+    def joint_moments(self, frame):
+        """[joint, 3] N m, of the second segment on the first, about the joint, in the world; NaN in the first frame."""
+        return self._joint_rows("joint_moment_nm", frame)
+
+    def tensions(self, frame):
+        """[joint] N: the force of a joint in the direction from its first segment's centre to its second's; NaN where
+        the centres coincide."""
+        first, second = self.centres(frame)[self.joint_segments().T]
+        apart = np.linalg.norm(second - first, axis=1)
+        along = np.einsum("ji,ji->j", self.joint_forces(frame), second - first)
+        return np.divide(along, apart, out=np.full(len(apart), np.nan), where=apart > 0)
+
+    def _joints(self):
+        if "/trajectories/joint_force_n" not in self.h5:
+            raise KeyNotFound(f"{self.h5.filename} has no forces of joints: set record.forces in the job to true")
+        return int(self.h5["/tasks/joints"][self.task])
+
+    def _joint_rows(self, name, frame):
+        joints = self._joints()
+        row = int(self.h5["/tasks/first_frame_joint"][self.task]) + range(self.frames())[frame] * joints
+        return self.h5[f"/trajectories/{name}"][row:row + joints]
+
     def _rows(self, name, frame):
         row = self.first_row[frame]
         return self.h5[f"/trajectories/{name}"][row:row + len(self.length)]

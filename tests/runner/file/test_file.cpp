@@ -219,6 +219,32 @@ TEST_CASE("contacts have columns where rods touch in any task, also in the file 
   for (const char* name : {"some.h5", "alone.h5", "none.h5"}) CHECK(verify(folder / name).damaged.empty());
 }
 
+TEST_CASE("forces have columns where a job records them, also in the file of one task alone") {
+  const TemporaryFolder folder;
+  Json job = full_job();
+  job["record"]["forces"] = true;
+  const Plan plan = plan_of(job), none = plan_of(full_job());
+  make_file(folder / "some.h5", plan, 6);
+  make_file(folder / "alone.h5", plan.alone(3, 1), 1);
+  make_file(folder / "none.h5", none, 6);
+  for (const char* path :
+       {"/tasks/first_frame_joint", "/tasks/first_joint_row", "/steps/clamp_force_n", "/steps/clamp_moment_nm",
+        "/steps/obstacle_force_n", "/trajectories/joint_position_m", "/trajectories/joint_force_n",
+        "/trajectories/joint_moment_nm", "/trajectories/joints/first", "/trajectories/joints/second"}) {
+    INFO(path);
+    CHECK(holds(folder / "some.h5", path));
+    CHECK(holds(folder / "alone.h5", path));
+    CHECK_FALSE(holds(folder / "none.h5", path));
+  }
+  // Two frames of 3, 4 and 6 joints.
+  CHECK(stored<std::int64_t>(folder / "some.h5", "/tasks/first_frame_joint") ==
+        std::vector<std::int64_t>{0, 6, 12, 20, 28, 40});
+  CHECK(stored<std::int64_t>(folder / "some.h5", "/tasks/first_joint_row") ==
+        std::vector<std::int64_t>{0, 3, 6, 10, 14, 20});
+  CHECK(stored<double>(folder / "some.h5", "/trajectories/joint_force_n").size() == 3 * 52);
+  for (const char* name : {"some.h5", "alone.h5", "none.h5"}) CHECK(verify(folder / name).damaged.empty());
+}
+
 TEST_CASE("a file older than the columns of contact has the checksums that it had") {
   const Plan plan = plan_of(full_job());
   TaskRecord record = synthetic_record(plan, 2);

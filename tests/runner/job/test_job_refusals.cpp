@@ -22,7 +22,7 @@ small: /scene/stretch_compliance_per_j = "rigid" | scene.stretch_compliance_per_
 small: /name = "a/b" | name: "a/b" | must be a file name of 1 to 100 letters, digits, "_", "-" or "."
 small: /solve = {"preconditioner": "jacoby"} | solve.preconditioner: "jacoby"
   | one of "none", "jacobi", "point_block_jacobi", "icc", "block_icc", "cholesky", "lagged_cholesky", "condensed"
-small: /record = {"xyzzy": 1} | record.xyzzy: unknown key; allowed here: "solves", "norms", "trajectory_every"
+small: /record = {"xyzzy": 1} | record.xyzzy: unknown key; allowed here: "solves", "norms", "trajectory_every", "forces"
 small: /scene/windings = 1 | scene.windings: this key belongs to scene.type "helix", not to "bending_rod"
 small: /scene/length_m | scene.length_m: missing: length of the rod | [m] | above 0 and at most 1000000
 small: /time/duration_s = 1 | time: "steps", "duration_s" exclude each other
