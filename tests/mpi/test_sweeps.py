@@ -252,7 +252,8 @@ class Apart(SweepCase):
         os.makedirs("elsewhere", exist_ok=True)
         program = [RODSWEEP, "run", os.path.abspath(job("apart")), *words]
         start = ["sh", "-c", '[ "$OMPI_COMM_WORLD_RANK" != 2 ] || cd elsewhere; exec "$@"', "sh", *program]
-        return subprocess.run([MPIRUN, "-n", "3", *start], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, check=False)
+        return subprocess.run([MPIRUN, "-n", "3", *start], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                              timeout=60, check=False)
 
     def test_it_is_refused_and_nothing_is_written(self):
         said = self.run_apart("-o", "common/apart.h5")
