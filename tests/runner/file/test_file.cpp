@@ -225,7 +225,7 @@ TEST_CASE("forces have columns where a job records them, also in the file of one
   job["record"]["forces"] = true;
   const Plan plan = plan_of(job), none = plan_of(full_job());
   make_file(folder / "some.h5", plan, 6);
-  make_file(folder / "alone.h5", plan.alone(3, 1), 1);
+  make_file(folder / "alone.h5", plan.single_task(3, 1), 1);
   make_file(folder / "none.h5", none, 6);
   for (const char* path :
        {"/tasks/first_frame_joint", "/tasks/first_joint_row", "/steps/clamp_force_n", "/steps/clamp_moment_nm",
