@@ -222,7 +222,8 @@ class Lost(InterruptedCase):
             for rank, pid in ranks_of(process).items():
                 if rank > 0:
                     os.kill(pid, signal.SIGKILL)
-        self.interrupt(Fault(kill_workers, ANY, LOST, (), ranks=4, words=self.LATE, environment=self.RECOVERY))
+        code = LOST if shutil.which("prterun") else 0    # Open MPI 5 returns the code of the ranks
+        self.interrupt(Fault(kill_workers, code, LOST, (), ranks=4, words=self.LATE, environment=self.RECOVERY))
         self.resume(3)
 
 

@@ -262,7 +262,7 @@ TEST_CASE("a file older than the columns of contact has the checksums that it ha
   CHECK(task_checksum(2, record) != sum.value());
 }
 
-TEST_CASE("the predicted size of the file is within 6 % of its real size") {
+TEST_CASE("the predicted size of the file is within 5 % of its real size, 6 % with HDF5 2") {
   const TemporaryFolder folder;
   const Json jobs[] = {small_job(), full_job(), with("/samples", "1000", full_job()),
                        with("/record", R"({"solves": "summary"})", with("/samples", "500", full_job()))};
@@ -271,7 +271,7 @@ TEST_CASE("the predicted size of the file is within 6 % of its real size") {
     const auto path = folder / (std::to_string(&job - jobs) + ".h5");
     make_file(path, plan, 0);
     const auto real = static_cast<double>(std::filesystem::file_size(path));
-    CHECK(static_cast<double>(file_bytes(plan)) == Approx(real).epsilon(0.06));
+    CHECK(static_cast<double>(file_bytes(plan)) == Approx(real).epsilon(H5_VERS_MAJOR < 2 ? 0.05 : 0.06));
     CHECK(static_cast<double>(file_bytes(plan)) >= real);  // the free-space check must not underestimate
   }
 }
