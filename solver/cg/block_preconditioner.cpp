@@ -1,8 +1,6 @@
 #include "solver/cg/block_preconditioner.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <vector>
 
 #include "solver/factor/block_factor.hpp"
 #include "solver/factor/elimination_order.hpp"
@@ -10,42 +8,6 @@
 
 namespace rodsweep {
 namespace {
-
-/// The inverses of the diagonal blocks, by Cholesky.
-class PointBlocks : public BlockPreconditioner {
- public:
-  explicit PointBlocks(const BlockMatrix& pattern) : inverse_(at(pattern.block_rows())) {}
-
-  bool set_up(const BlockMatrix& a) override {
-    for (int row = 0; row < a.block_rows(); ++row) {
-      const Block6& block = a.blocks[at(a.diagonal(row))];
-      Matrix6 entries;
-      for (int c = 0; c < 6; ++c) store6(entries.col(c).data(), block.column[c]);
-      const Eigen::LLT<Matrix6> factor(entries);
-      if (factor.info() != Eigen::Success) return false;
-      Matrix6 inverse = Matrix6::Identity();
-      factor.solveInPlace(inverse);
-      for (int c = 0; c < 6; ++c) inverse_[at(row)].column[c] = load6(inverse.col(c).data());
-    }
-    return true;
-  }
-
-  void apply(const double* r, double* z) override {
-    for (const Block6& block : inverse_) {
-      Lane8 even{}, odd{};
-      for (int c = 0; c < 6; c += 2) {
-        even += block.column[c] * r[c];
-        odd += block.column[c + 1] * r[c + 1];
-      }
-      store6(z, even + odd);
-      r += 6;
-      z += 6;
-    }
-  }
-
- private:
-  std::vector<Block6> inverse_;
-};
 
 class Incomplete : public BlockPreconditioner {
  public:
@@ -71,6 +33,21 @@ class Complete : public BlockPreconditioner {
  private:
   BlockFactor factor_;
   VectorX x_;
+};
+
+/// The factors of the diagonal blocks.
+class PointBlocks : public BlockPreconditioner {
+ public:
+  explicit PointBlocks(const BlockMatrix& pattern) : blocks_(pattern.block_rows(), {}), factor_(blocks_) {}
+  bool set_up(const BlockMatrix& a) override {
+    for (int row = 0; row < a.block_rows(); ++row) blocks_.blocks[at(row)] = a.blocks[at(a.diagonal(row))];
+    return factor_.set_up(blocks_);
+  }
+  void apply(const double* r, double* z) override { factor_.apply(r, z); }
+
+ private:
+  BlockMatrix blocks_;
+  Complete factor_;
 };
 
 }  // namespace
