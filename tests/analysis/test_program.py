@@ -194,6 +194,10 @@ class Program(unittest.TestCase):
                     np.testing.assert_array_equal(shown.joint_forces(frame), force)
                     self.assertTrue((np.abs(shown.tensions(frame)) <= np.linalg.norm(force, axis=1)).all())
                     self.assertGreater(np.abs(shown.joint_moments(frame)[0]).max(), 0)
+                    inside, tension = shown.internal_forces(frame), shown.tensions(frame)
+                    np.testing.assert_allclose(inside["tension"][1:-1], (tension[:-1] + tension[1:]) / 2,
+                                               atol=5e-2 * np.abs(tension).max())    # axes differ
+                    self.assertTrue(all(np.isfinite(values).all() for values in inside.values()))
             reaction = results.steps(columns=["clamp_force_n_y"])
             self.assertEqual(reaction.attrs["unit"]["clamp_force_n_y"], "N")
             self.assertTrue((reaction.clamp_force_n_y.abs() > 0).all())

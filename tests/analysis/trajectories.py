@@ -40,6 +40,24 @@ def plant(path, segments=6, frames=4, radius=0.05, length=0.2, rods=2, walls=0, 
             h5[f"trajectories/segments/{name}"] = np.tile(values, tasks)
 
 
+def plant_joints(path, pairs, position, force, moment, frames=4):
+    """Joints between pairs of segments, in all tasks of plant(): positions [joint, 3] in frame 0, and forces and moments
+    [joint, 3] in the others."""
+    joints = len(pairs)
+    with h5py.File(path, "r+") as h5:
+        tasks = len(h5["tasks/state"])
+        for name, each in (("joints", 0), ("first_joint_row", joints), ("first_frame_joint", joints * frames)):
+            h5[f"tasks/{name}"] = np.arange(tasks) * each + (joints if name == "joints" else 0)
+        for side, name in enumerate(("first", "second")):
+            h5[f"trajectories/joints/{name}"] = np.tile(np.asarray(pairs)[:, side], tasks)
+        h5["trajectories/joint_position_m"] = np.concatenate(
+            tasks * [position + np.array([0, 0.1 * frame, 0]) for frame in range(frames)])
+        for name, values in (("force_n", force), ("moment_nm", moment)):
+            of_frames = np.tile(np.asarray(values, dtype=float), (frames, 1))
+            of_frames[:joints] = np.nan
+            h5[f"trajectories/joint_{name}"] = np.tile(of_frames, (tasks, 1))
+
+
 def obstacle(number, kind, **values):
     """The columns of one obstacle."""
     return {f"obstacles[{number}].{kind}.{name}": value for name, value in values.items()}

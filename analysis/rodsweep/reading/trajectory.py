@@ -13,7 +13,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from rodsweep.reading import commandline
+from rodsweep.reading import commandline, internal_forces, obstacles
 from rodsweep.reading.errors import KeyNotFound
 
 SEGMENTS = "/trajectories/segments"
@@ -31,6 +31,7 @@ class Trajectory:
     radius: np.ndarray      # [segment] radius and length are 0 for a wall that holds the rod
     rod: np.ndarray         # [segment]
     static: np.ndarray      # [segment] held by a clamp
+    wall: float             # [m] thickness of the wall of a tube, infinite for a solid circle; None: another section
 
     def frames(self):
         return len(self.first_row)
@@ -75,8 +76,15 @@ class Trajectory:
         along = np.einsum("ji,ji->j", self.joint_forces(frame), second - first)
         return np.divide(along, apart, out=np.full(len(apart), np.nan), where=apart > 0)
 
+    def internal_forces(self, frame):
+        """{"tension": [segment], …} of every segment (rodsweep.reading.internal_forces)."""
+        return internal_forces.of_segments(self, frame)
+
+    def has_forces(self):
+        return "/trajectories/joint_force_n" in self.h5
+
     def _joints(self):
-        if "/trajectories/joint_force_n" not in self.h5:
+        if not self.has_forces():
             raise KeyNotFound(f"{self.h5.filename} has no forces of joints: set record.forces in the job to true")
         return int(self.h5["/tasks/joints"][self.task])
 
@@ -116,6 +124,11 @@ class Beside:
         return self._joined(Trajectory.axes, frame)
 
     ends = Trajectory.ends
+
+    def internal_forces(self, frame):
+        found = [part.internal_forces(min(frame, part.frames() - 1)) for part in self.parts]
+        return {name: np.concatenate([values[name] for values in found]) for name in found[0]
+                if all(name in values for values in found)}
 
 
 def axis(orientation):
@@ -163,7 +176,13 @@ def of_task(file, task):
     length, radius, rod, static = (file.h5[f"{SEGMENTS}/{name}"][rows]
                                    for name in ("length_m", "radius_m", "rod", "static"))
     return Trajectory(file.h5, task, first, first_row[there], file.h5["/trajectories/time_s"][task][there], length,
-                      radius, rod, static == 1)
+                      radius, rod, static == 1, wall(file, task))
+
+
+def wall(file, task):
+    """Trajectory.wall of a task."""
+    kind = obstacles.value(file, "scene.section.type", task)
+    return np.inf if kind is None else obstacles.value(file, "scene.section.wall_m", task)
 
 
 def recorded(file):
