@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from rodsweep.drawing import movie, povray, staging, tints
+from rodsweep.drawing import colourbar, movie, povray, staging, tints
 from rodsweep.reading import commandline, obstacles, trajectory
 from rodsweep.reading.commandline import whole_number
 from rodsweep.reading.errors import KeyNotFound, require_program
@@ -25,6 +25,7 @@ EXAMPLES = """examples:
   analysis/render.py results/net.h5 --task 3 --frame 0 10 -1 --view 30,20 --size 1600x1200 -o pictures
   analysis/render.py results/helix.h5 --select scene.segments=50 --movie mp4 --every 2 -o helix.mp4
   analysis/render.py results/ring.h5 --movie gif --size 400x300 --colour along
+  analysis/render.py results/hang.h5 --colour tension
   analysis/render.py results/side_by_side.h5 --task 0 --beside 1 2 3 --movie mp4"""
 SAMPLES = 4   # small pictures that give a GIF its colours
 
@@ -47,8 +48,10 @@ def arguments():
     made.add_argument("--size", metavar="WxH", type=pixels, default=(800, 600), help="pixels (default: 800x600)")
     made.add_argument("--view", metavar="VIEW", type=view, help="front, side, top or AZIMUTH,ELEVATION in degrees "
                                                                "(default: chosen from the shape of the scene)")
-    made.add_argument("--colour", choices=["rod", "along", "radius"], default="rod",
-                      help="what colours show: the rod (default), the position along it, or the radius")
+    made.add_argument("--colour", choices=tints.CHOICES, default="rod",
+                      help="what colours show: the rod (default), the position along it, the radius, or what a segment "
+                           "bears, with a colour bar: tension (positive if it is pulled), bending moment, torsion, or the "
+                           "axial stress at the surface of a solid circle or a tube; needs record.forces in the job")
     made.add_argument("--floor", metavar="HEIGHT", type=height, default="auto",
                       help="height of the floor in m, none, or auto (default): the scene's own floor, else the foot of "
                            "trees, else a little under the lowest point")
@@ -77,9 +80,7 @@ def main():
         paths = names(options, shown.task, frames)
         for path in paths:
             outputs.check(path, options)
-        stage = staging.staged(shown, frames, staging.upwards(file, shown.task), options.view, options.size,
-                               options.floor, obstacles.of_task(file, shown.task))
-        draw = Drawing(shown, stage, tints.colours(shown, options.colour), options)
+        draw = Drawing(shown, file, frames, options)
         for path in paths:
             os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
         if options.movie:
@@ -92,11 +93,19 @@ def main():
 
 
 class Drawing:
-    """Pictures of one trajectory with the same camera, lights and colours."""
+    """Pictures of one trajectory with the same camera, lights and colours; a colour bar is at the bottom."""
 
-    def __init__(self, shown, stage, colouring, options):
-        self.shown, self.stage, self.colouring = shown, stage, colouring
-        self.size, self.jobs, self.fine = options.size, options.jobs, options.fine
+    def __init__(self, shown, file, frames, options):
+        self.shown, self.jobs, self.fine = shown, options.jobs, options.fine
+        self.colours = tints.colours(shown, options.colour, frames)
+        width, height = options.size
+        self.bar = None
+        if self.colours.scale:
+            self.bar = colourbar.strip(self.colours.scale, self.colours.palette[:-1], (width, colourbar.height(height)))
+            height -= self.bar.height
+        self.size = width, height
+        self.stage = staging.staged(shown, frames, staging.upwards(file, shown.task), options.view, self.size,
+                                    options.floor, obstacles.of_task(file, shown.task))
 
     def pictures(self, frames, shrink=1):
         """Pictures in order; `jobs` are drawn in parallel, so memory use is bounded."""
@@ -105,12 +114,16 @@ class Drawing:
         with ThreadPoolExecutor(self.jobs) as pool:
             waiting = deque()
             for frame in frames:
-                text = povray.scene(self.shown, self.stage, self.colouring, frame)
-                waiting.append(pool.submit(povray.picture, text, size, threads, self.fine))
+                text = povray.scene(self.shown, self.stage, self.colours, frame)
+                waiting.append(pool.submit(self.picture, text, size, threads))
                 if len(waiting) > self.jobs:
                     yield waiting.popleft().result()
             while waiting:
                 yield waiting.popleft().result()
+
+    def picture(self, text, size, threads):
+        picture = povray.picture(text, size, threads, self.fine)
+        return colourbar.under(picture, self.bar) if self.bar else picture
 
 
 def write_movie(draw, frames, path, options):

@@ -1,10 +1,15 @@
-"""Tension, bending, torsion and stress of segments: closed forms, invariances."""
+"""Tension, bending, torsion and stress of segments: closed forms, invariances, colours in pictures."""
 
+import io
 import unittest
+import unittest.mock
 from types import SimpleNamespace
 
+import h5py
 import trajectories
 import numpy as np
+from PIL import Image
+from rodsweep.drawing import colourbar, povray, tints
 from rodsweep.reading import internal_forces, trajectory
 
 N, H, RADIUS = 6, 0.2, 0.05    # segments of a rod, their length, their radius
@@ -123,3 +128,66 @@ class Pictures(trajectories.Planted):
             for name, values in shown.internal_forces(frame).items():
                 np.testing.assert_allclose(values, of(rod(*bent()))[name], err_msg=name)
         self.assertTrue(all(np.isnan(values).all() for values in shown.internal_forces(0).values()))
+
+    def test_signed_scales_are_symmetric_and_the_same_in_all_frames(self):
+        self.plant_rod()
+        file = self.changed(("trajectories/joint_force_n", slice(5, 10), lambda force: -2 * force))    # frame 1
+        shown = trajectory.of_task(file, 0)
+        found = tints.colours(shown, "tension", range(4))
+        self.assertEqual(found.scale, tints.Scale("tension", "N", -9.0, 9.0))    # twice 5 N/m by 0.9 m
+        pushed, pulled = found.numbers(1), found.numbers(3)
+        held = len(found.palette) - 1
+        self.assertEqual((pushed[0], pulled[0], set(found.numbers(0))), (held, held, {held}))
+        self.assertEqual((pushed[1], pulled[1]), (0, round((tints.SHADES - 1) * 0.75)))
+        red, _, blue = found.palette[pushed[1]]
+        self.assertGreater(blue, red)
+        self.assertEqual(tints.colours(shown, "bending", range(4)).scale, tints.Scale("bending", "N m", 0.0, 2.7))
+
+    def test_a_scale_of_nothing_but_zeros_is_one(self):
+        self.plant_rod()
+        file = self.changed(("trajectories/joint_moment_nm", slice(5, None), 0.0))
+        found = tints.colours(trajectory.of_task(file, 0), "torsion", range(4))
+        self.assertEqual((found.scale.low, found.scale.high), (-1, 1))
+
+    def test_the_bar_shows_the_shades_from_low_to_high(self):
+        shades = np.linspace([0, 0, 1], [1, 0, 0], tints.SHADES)
+        bar = np.asarray(colourbar.strip(tints.Scale("tension", "N", -2.0, 2.0), shades, (400, 40))).astype(int)
+        self.assertEqual(bar.shape, (40, 400, 3))
+        row = bar[12, 125:276]
+        self.assertTrue((np.diff(row[:, 0]) >= 0).all() and (np.diff(row[:, 2]) <= 0).all())
+        self.assertTrue(row[0, 2] > 240 and row[-1, 0] > 240)
+
+    def test_a_picture_with_a_bar_has_the_size_asked_for(self):
+        self.plant_rod()
+        drawn = []
+
+        def blank(_, size, *__):
+            drawn.append(size)
+            out = io.BytesIO()
+            Image.new("RGB", size, "white").save(out, "PNG")
+            return out.getvalue()
+
+        with unittest.mock.patch.object(povray, "picture", blank):
+            for by in internal_forces.QUANTITIES:
+                self.run_script("render.py", "sweep.h5", "--size", "300x200", "--colour", by, "-o", f"{by}.png")
+                with Image.open(f"{by}.png") as picture:
+                    self.assertEqual(picture.size, (300, 200))
+                    self.assertTrue((np.asarray(picture)[:drawn[-1][1]] == 255).all())
+                    self.assertLess(np.asarray(picture)[drawn[-1][1]:].min(), 100)
+            self.run_script("render.py", "sweep.h5", "--size", "300x200", "--colour", "stress", "--movie", "gif", "-o", "a.gif")
+            self.run_script("render.py", "sweep.h5", "--size", "300x200", "--colour", "stress", "--beside", "1", "-o", "b.png")
+        with Image.open("a.gif") as film:
+            self.assertEqual((film.n_frames, film.size), (4, (300, 200)))
+
+    def test_files_without_forces_and_sections_without_a_stress_are_refused(self):
+        self.plant(rods=1)
+        self.refused("render.py", "sweep.h5", "--colour", "tension", words="set record.forces in the job to true")
+        self.plant_rod()
+        self.refused("render.py", "sweep.h5", "--colour", "bending", "--frame", "0",
+                     words="the first frame is the initial state")
+        for kind, wall, expected in (("tube", 0.02, 0.02), ("rectangle", np.nan, None)):
+            self.plant_rod()
+            file = self.changed(("tasks/parameters/scene.section.type", None, np.array(3 * [kind], dtype=h5py.string_dtype())),
+                                ("tasks/parameters/scene.section.wall_m", None, np.full(3, wall)))
+            self.assertEqual(trajectory.of_task(file, 0).wall, expected)
+        self.refused("render.py", "sweep.h5", "--colour", "stress", words="neither a solid circle nor a tube")

@@ -60,7 +60,7 @@ class Geometry(Planted):
 
     def test_tubes_are_the_capsules_of_a_known_pose(self):
         shown = self.shown()
-        text = povray.tubes(shown, *tints.colours(shown, "rod"), frame=2)
+        text = povray.tubes(shown, tints.colours(shown, "rod"), frame=2)
         found = np.array([[float(v) for v in re.findall(NUMBER, line)] for line in text.splitlines()
                           if line.startswith("cylinder")])
         found = found[np.lexsort((found[:, 0], found[:, 2]))]
@@ -74,7 +74,7 @@ class Geometry(Planted):
 
     def test_a_wall_is_a_plate_behind_the_rod(self):
         shown = self.shown(walls=1, rods=1)
-        text = povray.tubes(shown, *tints.colours(shown, "rod"), frame=0)
+        text = povray.tubes(shown, tints.colours(shown, "rod"), frame=0)
         cylinders = [[float(v) for v in re.findall(NUMBER, line)] for line in text.splitlines()
                      if line.startswith("cylinder")]
         plate = [c for c in cylinders if c[6] > 0.06]
@@ -86,8 +86,10 @@ class Geometry(Planted):
     def test_colours_tell_rods_places_and_radii_and_held_segments_are_grey(self):
         shown = self.shown()
         for by, different in (("rod", 2), ("along", 2), ("radius", 1)):
-            palette, number = tints.colours(shown, by)
-            self.assertTrue((number[[0, 3]] == len(palette) - 1).all())
+            found = tints.colours(shown, by)
+            number = found.numbers(0)
+            self.assertIsNone(found.scale)
+            self.assertTrue((number[[0, 3]] == len(found.palette) - 1).all())
             self.assertEqual(len(set(number[[1, 2, 4, 5]])), different, by)
 
 

@@ -24,10 +24,10 @@ BUSY, TRIES = b"Timed out waiting for worker thread startup", 5   # POV-Ray's me
 SLAB = 0.02   # thickness of a slope's disc as a share of its radius
 
 
-def scene(trajectory, stage, colouring, frame):
-    """The text of one frame. colouring: palette and numbers of tints.colours()."""
+def scene(trajectory, stage, colours, frame):
+    """The text of one frame. colours: those of tints.colours()."""
     return (surroundings(stage) + obstacles(stage, trajectory.time_s[frame]) +
-            tubes(trajectory, *colouring, frame))
+            tubes(trajectory, colours, frame))
 
 
 def surroundings(stage):
@@ -81,7 +81,8 @@ def obstacles(stage, time_s=0.0):
     return "".join(parts)
 
 
-def tubes(trajectory, palette, colour, frame):
+def tubes(trajectory, colours, frame):
+    colour = colours.numbers(frame)
     low, high = trajectory.ends(frame)
     parts = []
     for k in np.unique(colour):
@@ -95,7 +96,7 @@ def tubes(trajectory, palette, colour, frame):
             behind = low[walls] - PLATE * radius * trajectory.axes(frame)[walls]
             body += many("cylinder{<%.7g,%.7g,%.7g>,<%.7g,%.7g,%.7g>,%.7g}\n", behind, low[walls],
                          np.sqrt(1 - PLATE ** 2) * radius)
-        parts.append(f"union{{\n{body}pigment{{srgb {vector(palette[k])}}} "
+        parts.append(f"union{{\n{body}pigment{{srgb {vector(colours.palette[k])}}} "
                      "finish{ambient 0.14 diffuse 0.78 specular 0.18 roughness 0.03}}\n")
     return "".join(parts)
 
