@@ -2,10 +2,11 @@
 """A recorded trajectory for ParaView or VisIt: an XDMF file that refers to the results file.
 
 Each frame has the segments' centres, joined by lines, with orientation (w, x, y, z), radius, length, rod and whether a
-clamp holds them. The numbers stay in the HDF5 file: keep the two together. Open the .xdmf with ParaView's "XDMF
-Reader"; its Xdmf3 readers fail on parts of datasets, which frames are. To show tubes, apply Extract Surface and Tube
-with Scalars "radius" and Vary Radius "By Absolute Scalar". Obstacles are a separate block of triangles, "obstacles",
-which Extract Block selects. The script prints the path.
+clamp holds them. If the job recorded forces, each frame also has tension [N], bending and torsion [N m] and stress [Pa], as
+render.py shows them; they are 0 where unknown, as in the first frame. These are numbers in the XDMF file. All others stay in
+the HDF5 file: keep the two together. Open the .xdmf with ParaView's "XDMF Reader"; its Xdmf3 readers fail on parts of
+datasets, which frames are. To show tubes, apply Extract Surface and Tube with Scalars "radius" and Vary Radius "By Absolute
+Scalar". Obstacles are a separate block of triangles, "obstacles", which Extract Block selects. The script prints the path.
 """
 
 import os
@@ -64,6 +65,9 @@ def document(shown, reference, touched=()):
         rows.add(attribute(grid, "orientation", "Matrix"), "/trajectories/orientation", row)
         for name, column in CONSTANT.items():
             rows.add(attribute(grid, name, "Scalar"), f"{trajectory.SEGMENTS}/{column}", shown.first_segment)
+        if shown.has_forces():
+            for name, values in shown.internal_forces(frame).items():    # not every XDMF reader reads NaN
+                numbers(attribute(grid, name, "Scalar"), np.nan_to_num(values), NumberType="Float", Precision="8")
     if touched:
         low, high, _ = staging.bounds(shown, range(shown.frames()))
 
@@ -106,8 +110,9 @@ def solids(parent, points, triangles, time=None):
 
 def numbers(parent, rows, **kind):
     """Adds an array as text."""
-    item = ElementTree.SubElement(parent, "DataItem", Format="XML", Dimensions=text(len(rows), len(rows[0])), **kind)
-    item.text = "\n" + "\n".join(" ".join(f"{value:.9g}" for value in row) for row in rows) + "\n"
+    rows = np.asarray(rows)
+    item = ElementTree.SubElement(parent, "DataItem", Format="XML", Dimensions=text(*rows.shape), **kind)
+    item.text = "\n" + "\n".join(" ".join(f"{value:.9g}" for value in row) for row in rows.reshape(len(rows), -1)) + "\n"
 
 
 def attribute(grid, name, kind):

@@ -1,9 +1,11 @@
-"""Tension, bending, torsion and stress of segments: closed forms, invariances, colours in pictures."""
+"""Tension, bending, torsion and stress of segments: closed forms, invariances, colours in pictures, ParaView's arrays."""
 
 import io
+import os
 import unittest
 import unittest.mock
 from types import SimpleNamespace
+from xml.etree import ElementTree
 
 import h5py
 import trajectories
@@ -191,3 +193,18 @@ class Pictures(trajectories.Planted):
                                 ("tasks/parameters/scene.section.wall_m", None, np.full(3, wall)))
             self.assertEqual(trajectory.of_task(file, 0).wall, expected)
         self.refused("render.py", "sweep.h5", "--colour", "stress", words="neither a solid circle nor a tube")
+
+    def test_paraview_has_the_values_of_every_frame_where_forces_were_recorded(self):
+        shown = self.plant_rod()
+        self.run_script("paraview.py", "sweep.h5")
+        grids = ElementTree.parse("sweep-task0.xdmf").getroot().findall("Domain/Grid/Grid")
+        for frame, grid in enumerate(grids):
+            for name, values in shown.internal_forces(frame).items():
+                item = grid.find(f"Attribute[@Name='{name}']/DataItem")
+                self.assertEqual(item.get("Dimensions"), str(N))
+                np.testing.assert_allclose(np.array(item.text.split(), dtype=float), np.nan_to_num(values), rtol=1e-8)
+        self.plant(rods=1)
+        os.remove("sweep-task0.xdmf")
+        self.run_script("paraview.py", "sweep.h5")
+        with open("sweep-task0.xdmf", encoding="utf-8") as written:
+            self.assertNotIn("tension", written.read())
