@@ -13,19 +13,9 @@
 
 namespace rodsweep {
 
-/// The complex factor z per step of a small free oscillation of a scene's rod. Samples y are displacements weighted by
-/// initial velocities, y'' ~ -w^2 y. Least-squares fit of y(k + 1) - 2 Re(z) y(k) + |z|^2 y(k - 1) = 0 to every
-/// `stride`-th sample.
-inline std::complex<double> factor_per_step(Scene scene, double dt, int steps, std::size_t stride) {
-  const std::vector<Vector3> weight = scene.rods.front().velocity, rest = scene.rods.front().position;
-  Simulation simulation(std::move(scene), dt);
-  std::vector<double> samples;
-  for (int i = 0; i < steps; ++i) {
-    simulation.step();
-    double sum = 0;
-    for (std::size_t s = 0; s < rest.size(); ++s) sum += weight[s].dot(simulation.rod().position[s] - rest[s]);
-    samples.push_back(sum);
-  }
+/// The complex factor z per step of samples y'' ~ -w^2 y. Least-squares fit of y(k + 1) - 2 Re(z) y(k) + |z|^2 y(k - 1) =
+/// 0 to every `stride`-th sample.
+inline std::complex<double> factor_per_step(const std::vector<double>& samples, std::size_t stride) {
   const std::size_t rows = samples.size() - 2 * stride;
   test::MatrixX known(rows, 2);
   VectorX next(rows);
@@ -37,6 +27,20 @@ inline std::complex<double> factor_per_step(Scene scene, double dt, int steps, s
   const VectorX fit = test::least_squares(known, next);
   const double size = std::sqrt(fit[1]), power = 1 / static_cast<double>(stride);
   return std::polar(std::pow(size, power), std::acos(fit[0] / (2 * size)) * power);
+}
+
+/// The factor of a small free oscillation of a scene's rod. Samples are displacements weighted by initial velocities.
+inline std::complex<double> factor_per_step(Scene scene, double dt, int steps, std::size_t stride) {
+  const std::vector<Vector3> weight = scene.rods.front().velocity, rest = scene.rods.front().position;
+  Simulation simulation(std::move(scene), dt);
+  std::vector<double> samples;
+  for (int i = 0; i < steps; ++i) {
+    simulation.step();
+    double sum = 0;
+    for (std::size_t s = 0; s < rest.size(); ++s) sum += weight[s].dot(simulation.rod().position[s] - rest[s]);
+    samples.push_back(sum);
+  }
+  return factor_per_step(samples, stride);
 }
 
 }  // namespace rodsweep

@@ -1,4 +1,5 @@
-// Small vibrations: frequency and decay of the modes of a clamped-free beam and of a hanging rope.
+// Small vibrations: frequency and decay of the modes of a clamped-free beam, in bending and torsion, and of a hanging
+// rope.
 //
 // Initial velocities start a mode; its own shape projects the motion (oscillation.hpp has the effect of implicit Euler
 // on frequency and amplitude).
@@ -112,6 +113,48 @@ TEST_CASE("A finely divided beam has the first frequency that rotary inertia giv
   // Rayleigh's correction: -(1/2) (I / A) times int phi'^2 / int phi^2, which is 4.6478 / L^2 for mode 1.
   const BendingRod p = weightless_cantilever(200, 1e9, 1e9);
   CHECK(limit == Approx(1 - 4.6478 / 2 * std::pow(p.radius_m / (2 * p.length_m), 2)).epsilon(5e-6));
+}
+
+/// The factor per step of the first torsional mode of a clamped-free round rod by BDF2.
+std::complex<double> torsional_factor(const BendingRod& p, double frequency, double dt) {
+  Scene scene = build_scene(p);
+  Rod& start = scene.rods.front();
+  const Quaternion straight = start.orientation.front();
+  std::vector<double> shape;
+  for (std::size_t s = 0; s < start.segments.size(); ++s) {
+    shape.push_back(std::sin(pi * start.position[s].x() / (2 * p.length_m)));
+    start.angular_velocity[s].x() = 1e-4 * frequency * shape.back();
+  }
+  Simulation simulation(scene, StepSettings{dt, 12, 1e-14, Integrator::bdf2});
+  const double period = 2 * pi / (frequency * dt);  // in steps
+  simulation.run(20);                               // the first step is Euler's; BDF2's second root decays
+  std::vector<double> samples;
+  for (int step = 0; step < static_cast<int>(2 * period); ++step) {
+    simulation.step();
+    double sum = 0;
+    for (std::size_t s = 0; s < shape.size(); ++s)
+      sum += shape[s] * rotation(simulation.rod().orientation[s], straight).x();
+    samples.push_back(sum);
+  }
+  return factor_per_step(samples, static_cast<std::size_t>(period / 5));
+}
+
+TEST_CASE("A clamped-free rod vibrates in torsion with the period 4 L sqrt(rho / G), with errors of second order") {
+  const BendingRod p = weightless_cantilever(40, 1e7, 4e6);
+  const double speed = std::sqrt(p.torsion_modulus_pa / p.density_kg_m3), w = pi / 2 * speed / p.length_m;
+  CHECK(w / (2 * pi) == Approx(7.90569).epsilon(1e-6));
+  // A chain of N equal inertias: its frequency is w sin(a) / a with a = pi / 4N.
+  const double a = pi / (4 * p.segments), of_chain = w * std::sin(a) / a;
+  double error[2];
+  for (int k = 0; k < 2; ++k) {
+    const double dt = 2 * pi / w / (100 << k);
+    const std::complex<double> z = torsional_factor(p, w, dt), step(0, of_chain * dt);
+    const std::complex<double> expected = (2.0 + std::sqrt(1.0 + 2.0 * step)) / (3.0 - 2.0 * step);  // of BDF2
+    CHECK(std::abs(z - expected) < 1e-8);
+    CHECK(std::arg(z) / dt == Approx(w).epsilon(k == 0 ? 1.5e-3 : 5e-4));
+    error[k] = std::arg(z) / (of_chain * dt) - 1;
+  }
+  CHECK(std::log2(error[0] / error[1]) == Approx(2).margin(0.05));
 }
 
 TEST_CASE("A rod without bending stiffness swings as a hanging rope") {
