@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Error against wall time for two kinds of time step: the paper's, and one that keeps the balance of momentum.
+"""Error against wall time for kinds of time step: Euler or BDF2, with or without the balance of momentum.
 
-Each kind of scene has a panel: the error at the end of a simulation over the wall time of a simulated second, one
-point per time step. If a scene has only one time step, there is no figure. The error is the distance of a segment from
-its position with the smallest balanced step, root mean square over segments. It is relative to the diagonal of the box
-around all segments at the start. Times and errors are medians over simulations. The table adds the mean Newton
-iterations of a step and the largest momentum residual after the first step. The file needs trajectories to the end of
-the simulation (record.trajectory_every) and /solves (record.solves "all").
+Each kind of scene has a panel: the error at the end of a simulation over the wall time of a simulated second, one point
+per time step. If a scene has only one time step besides the reference's, there is no figure. The error is the root mean
+square distance of the segments from where they are with the smallest step, relative to the diagonal of the box around
+all segments at the start. With the smallest step, BDF2 in balance is the reference if it was tried, else Euler in
+balance. Times and errors are medians over simulations. The table adds the mean Newton iterations of a step and the
+median momentum residual after the first step. The file needs trajectories to the end of the simulation
+(record.trajectory_every) and /solves (record.solves "all").
 """
 
 from dataclasses import dataclass
@@ -20,8 +21,14 @@ from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/balance.py results/balance.h5
-  analysis/balance.py results/balance.h5 --scene helix"""
-KINDS = {0: "the paper's step", 1: "in balance"}    # by time.balance
+  analysis/balance.py results/balance.h5 --scene helix
+  analysis/balance.py results/default_steps.h5 --motion"""
+KINDS = {("euler", 0): "step of Shao et al.", ("euler", 1): "Euler in balance", ("bdf2", 0): "BDF2",
+         ("bdf2", 1): "BDF2 in balance"}    # by time.integrator and time.balance; the last is the best reference
+FEATURES = (("scene.tip_force_n", "with an end load"), ("scene.tip_torque_nm", "with an end torque"),
+            ("scene.tip_motion", "with a moved end"), ("scene.section", "of another section"),
+            ("scene.motions", "with moved ends"), ("scene.wind", "in wind"), ("scene.obstacles", "dropped"))
+PLAIN = {"", "none", "free", "circle"}    # words of FEATURES that a scene does not have
 
 
 @dataclass(frozen=True)
@@ -35,82 +42,122 @@ class Line:
 
 
 def main():
-    options = study.parser(__doc__, EXAMPLES, tolerances=None, newton=False).parse_args()
+    made = study.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
+    made.add_argument("--motion", action="store_true", help="the error over all frames, root mean square, not at the end")
+    options = made.parse_args()
     with SweepFile(options.file) as file:
         shown = study.of_tasks(file, options)
-        balance = file.parameters.get("time.balance")
-        if balance is None or len(set(balance.values[shown.sims.tasks()].tolist())) < len(KINDS):
-            raise KeyNotFound(f"{file.path} has only one kind of step in the chosen simulations: sweep time.balance "
-                              "over false and true")
         if not all(path in file.h5 for path in (accuracy.REST, accuracy.ASSEMBLY, accuracy.DIRECT)):
             raise KeyNotFound(f"{file.path} has no times of steps and solves")
         if not file.has("/steps/momentum_residual"):
             raise KeyNotFound(f"{file.path} has no momentum residuals (/steps/momentum_residual)")
         tasks = np.unique(shown.sims.any_task)
-        panels = {title: {kind: _line(file, tasks[of], kind) for kind in KINDS} for title, of in _scenes(file, tasks).items()}
+        kinds = _kinds(file)
+        found = [kind for kind in KINDS if kind in {kinds[task] for task in tasks}]
+        if len(found) < 2:
+            raise KeyNotFound(f"{file.path} has only one kind of step in the chosen simulations: sweep time.balance "
+                              "or time.integrator")
+        panels = {title: _lines(file, of, kinds, found, options.motion) for title, of in _scenes(file, tasks).items()}
         print("\n".join(table(panels)) + "\n")
-        if any(len(lines[1].step_s) == 1 for lines in panels.values()):
-            return  # one time step gives no line to draw
+        if any(len(lines[found[-1]].step_s) < 3 for lines in panels.values()):
+            return  # one time step and the reference's give no line to draw
         study.save(file, options, {"balance": figure(shown, panels)})
 
 
+def _kinds(file):
+    """The kind of step of every task, a key of KINDS."""
+    def values(key, default):
+        return file.parameters[key].values if key in file.parameters else [default] * file.task_count
+
+    return [(str(integrator), int(balance)) for integrator, balance in
+            zip(values("time.integrator", "euler"), values("time.balance", 0))]
+
+
 def _scenes(file, tasks):
-    """{title: mask of tasks} by scene type, tip load and what holds the scene."""
-    keys = [key for key in ("scene.type", "scene.tip_force_n", "scene.held") if key in file.parameters]
-    codes = np.column_stack([file.parameters[key].codes()[tasks] for key in keys])
-    titles = {}
-    for row in dict.fromkeys(map(tuple, codes.tolist())):
-        of = (codes == row).all(axis=1)
-        task = tasks[np.argmax(of)]
-        name = file.parameters["scene.type"].text(task).replace("_", " ")
-        if "scene.held" in keys and file.parameters["scene.held"].text(task) == "free":
-            name = "free " + name
-        if "scene.tip_force_n" in keys and np.any(np.nan_to_num(file.parameters["scene.tip_force_n"].values[task])):
-            name += " at rest under a tip load"
-        titles[name] = of
-    return titles
+    """{title: its tasks}, in the order of the file. The same random values are drawn for all kinds and steps, so the
+    first sample tells which tasks have the same scene."""
+    keys = [key for key in file.parameters if key.startswith("scene.")]
+    codes = np.column_stack([file.parameters[key].codes() for key in keys])
+    points = {}
+    for task in tasks[np.argsort(file.sample[tasks], kind="stable")]:
+        if file.point[task] not in points:
+            points[file.point[task]] = tuple(codes[task])
+    scenes = {}
+    for task in tasks:
+        scenes.setdefault(points[file.point[task]], []).append(task)
+    names = [_name(file, of[0]) for of in scenes.values()]
+    titles = [name if names.count(name) == 1 else f"{name} {names[:k + 1].count(name)}" for k, name in enumerate(names)]
+    return {title: np.array(of) for title, of in zip(titles, scenes.values())}
 
 
-def _line(file, tasks, kind):
-    step_s, balance = file.parameters["time.step_s"].values, file.parameters["time.balance"].values[tasks]
+def _name(file, task):
+    words = [file.parameters["scene.type"].text(task).replace("_", " ")]
+    for key, feature in FEATURES:
+        if key not in file.parameters:
+            continue
+        value = file.parameters[key].values[task]
+        if np.any(np.nan_to_num(value)) if isinstance(value, np.ndarray) else file.parameters[key].text(task) not in PLAIN:
+            words.append(feature)
+    return " ".join(words)
+
+
+def _lines(file, tasks, kinds, found, motion):
+    """{kind: Line}"""
+    step_s = file.parameters["time.step_s"].values
     finest = step_s[tasks].min()
+    best = max((kinds[task] for task in tasks if step_s[task] == finest), key=list(KINDS).index)
     exact = {int(file.sample[task]): accuracy.frames(file, task)
-             for task in tasks[(balance == 1) & (step_s[tasks] == finest)]}
+             for task in tasks if kinds[task] == best and step_s[task] == finest}
+    return {kind: _line(file, [task for task in tasks if kinds[task] == kind and int(file.sample[task]) in exact],
+                        exact, finest if kind == best else None, motion) for kind in found}
+
+
+def _line(file, tasks, exact, reference_s, motion):
+    step_s = file.parameters["time.step_s"].values
     line = Line([], [], [], [], [])
     for size in sorted(set(step_s[tasks].tolist()), reverse=True):
-        of = [task for task in tasks[(balance == kind) & (step_s[tasks] == size)] if int(file.sample[task]) in exact]
+        of = [task for task in tasks if step_s[task] == size]
         draws = file.sample[of]
-        is_reference = kind == 1 and size == finest
         line.step_s.append(size)
         line.second_ms.append(intervals.median([1e3 * accuracy.step_s(file, task) / size for task in of], draws))
         apart = [accuracy.distances(accuracy.frames(file, task), exact[int(file.sample[task])]) for task in of]
-        line.error.append(None if is_reference else intervals.median(
-            [frames[-1] if len(frames) else np.nan for frames in apart], draws))
+        line.error.append(None if size == reference_s else intervals.median(
+            [_error(frames if motion else frames[-1:]) for frames in apart], draws))
         line.iterations.append(intervals.mean([file.rows("/steps/newton_iterations", task).mean() for task in of], draws))
         line.lacking.append(intervals.median(
-            [np.fmax.reduce(file.rows("/steps/momentum_residual", task)[1:], initial=np.nan) for task in of], draws))
+            [np.nanmedian(file.rows("/steps/momentum_residual", task)[1:]) for task in of], draws))
     return line
+
+
+def _error(distances):
+    return np.sqrt(np.square(distances).mean()) if len(distances) else np.nan
 
 
 def table(panels):
     rows = [["", "time step (s)", "step", "error", "ms per simulated second", "Newton iterations", "momentum residual"]]
     for title, lines in panels.items():
-        for k, size in enumerate(lines[1].step_s):
-            for kind, line in lines.items():
-                error = texts.short_text(float(line.error[k].value), 2) if line.error[k] else "reference"
-                rows.append([title if not (k or kind == 1) else "", f"{size:g}" if kind == 0 else "",
-                             KINDS[kind], error, *(texts.short_text(float(values[k].value), 2)
-                                                   for values in (line.second_ms, line.iterations, line.lacking))])
+        sizes = sorted({size for line in lines.values() for size in line.step_s}, reverse=True)
+        for size, kind in ((size, kind) for size in sizes for kind in lines if size in lines[kind].step_s):
+            line, k = lines[kind], lines[kind].step_s.index(size)
+            error = texts.short_text(float(line.error[k].value), 2) if line.error[k] else "reference"
+            rows.append([title, f"{size:g}", KINDS[kind], error,
+                         *(texts.short_text(float(values[k].value), 2)
+                           for values in (line.second_ms, line.iterations, line.lacking))])
+    for k in range(len(rows) - 1, 1, -1):    # what the row above says already
+        if rows[k][0] == rows[k - 1][0]:
+            rows[k][1] = "" if rows[k][1] == rows[k - 1][1] else rows[k][1]
+            rows[k][0] = ""
     return texts.aligned(rows)
 
 
 def figure(shown, panels):
-    looks = dict(zip(KINDS, style.series_styles(len(KINDS))))
+    kinds = list(next(iter(panels.values())))
+    looks = dict(zip(kinds, style.series_styles(len(kinds))))
     points = [error for lines in panels.values() for line in lines.values() for error in line.error if error]
     notes = [f"Medians of {study.sample_text(points, mark='')}. Along a line the time step halves from point to point, "
-             f"from {max(next(iter(panels.values()))[1].step_s):g} s on the left to twice the reference's. "
-             "Reference: the smallest step in balance.", shown.about()]
-    page = layout.Page(shown.width_mm, ["Error at the end"], len(panels), 3 if shown.wide else 1, 44,
+             f"from {max(next(iter(panels.values()))[kinds[-1]].step_s):g} s on the left to twice the reference's. "
+             f"Reference: {KINDS[kinds[-1]]}, smallest step.", shown.about()]
+    page = layout.Page(shown.width_mm, ["Error"], len(panels), 3 if shown.wide else 1, 44,
                        [look.handle(KINDS[kind]) for kind, look in looks.items()], notes, shown.timing_warning(),
                        left_mm=13, gap_mm=9)
     for column, (axes, (title, lines)) in enumerate(zip(page.axes[0], panels.items())):

@@ -159,10 +159,10 @@ STUDIES = {
     "integrators": Study("error of the motion over the time step, and energies, with Euler and BDF2", "1 min", [
         *run("integrators"), to("integrators", draw("integrators", "integrators", "--energy-step 0.01")),
         origins("integrators")]),
-    "balance": Study("two kinds of step, over the time step and on every kind of scene", "5 min", [
-        *run("balance", "balance_scenes"), to("balance", draw("balance", "balance")),
-        to("balance_scenes", "analysis/balance.py results/balance_scenes.h5 --format png"),
-        origins("balance", "balance_scenes")]),
+    "balance": Study("the step of Shao et al., that in balance, and the default, on 20 rods of a user", "2 min", [
+        *run("balance", "default_steps"), to("balance", draw("balance", "balance")),
+        to("default_steps", "analysis/balance.py results/default_steps.h5 --motion --format png"),
+        origins("balance", "default_steps")]),
     "lattices": Study("cubic lattices: number of joints, all preconditioners with all guesses, closed loops", "2 hours",
                       combinations("lattice_swing", "lattice_preconditioners", "lattice_closed",
                                    without=("lattice_preconditioners", "lattice_closed"))),

@@ -1,6 +1,7 @@
 #include "runner/measure/simulation_log.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -155,6 +156,7 @@ bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& 
          projection_failed(spec_.solve.method) + std::string(to_string(report.outcome)));
     return false;
   }
+  if (spec_.time.balance && solves_systems(spec_.solve.method) && !report.balanced) ++unbalanced_;
   const auto row = static_cast<std::size_t>(step);
   log_step(row, scene, report);
   record_.tasks.steps_done[0] = step + 1;
@@ -207,15 +209,20 @@ void SimulationLog::note_turns(const Scene& scene) {
 }
 
 std::string SimulationLog::warnings() const {
-  std::string text;
-  if (slipped_) text = std::string("a joint") + slip;
-  const double excess = std::max(tumbled_ / most_tumbled, rolled_ / most_rolled);
-  if (!(excess > 1)) return text;
-  const bool rolls = rolled_ / most_rolled == excess;
-  return fmt::format(
-      "{}{}a segment turned by more than {:g} rad {} in a step, where its motion is wrong: use a step_s of {:g}", text,
-      text.empty() ? "" : "; ", rolls ? most_rolled : most_tumbled,
-      rolls ? "about its axis, in contact," : "across its axis", rounded_down(spec_.time.step_s / excess));
+  std::vector<std::string> all;
+  if (slipped_) all.push_back(std::string("a joint") + slip);
+  if (const double excess = std::max(tumbled_ / most_tumbled, rolled_ / most_rolled); excess > 1) {
+    const bool rolls = rolled_ / most_rolled == excess;
+    all.push_back(fmt::format(
+        "a segment turned by more than {:g} rad {} in a step, where its motion is wrong: use a step_s of {:g}",
+        rolls ? most_rolled : most_tumbled, rolls ? "about its axis, in contact," : "across its axis",
+        rounded_down(spec_.time.step_s / excess)));
+  }
+  if (unbalanced_ > 0)
+    all.push_back(
+        fmt::format("Newton did not balance momentum in {:g} % of the steps: use a shorter step_s where forces matter",
+                    std::max(1.0, rounded_down(100.0 * unbalanced_ / static_cast<double>(task_.steps)))));
+  return fmt::format("{}", fmt::join(all, "; "));
 }
 
 void SimulationLog::fail(TaskOutcome outcome, int step, const std::string& why) {

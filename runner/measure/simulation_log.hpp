@@ -51,6 +51,7 @@ class SimulationLog {
   const TimeStepper& stepper_;
   std::vector<Observed> observed_;  ///< by rod
   double initial_length_ = 0;
+  int unbalanced_ = 0;               ///< steps that should have balanced momentum
   bool slipped_ = false;             ///< a joint turned past half a turn
   double tumbled_ = 0, rolled_ = 0;  ///< the most that a segment turned across and about its axis in a step [rad]
 };

@@ -222,8 +222,10 @@ KeyTable<ContactSettings> contact_keys() {
                     .from(0, 1),
                 &Settings::restitution)
       .optional(number_key("tolerance",
-                           "contacts have converged if no correction of a segment is larger than this, in its radii")
-                    .positive(1),
+                           "contacts have converged if no correction of a segment is larger than this, in its radii; "
+                           "\"from_step\": 0.02 / s times step_s")
+                    .positive(1)
+                    .or_word("from_step"),
                 &Settings::tolerance)
       .optional(
           integer_key("sweeps",

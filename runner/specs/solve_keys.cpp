@@ -56,7 +56,7 @@ KeyTable<TimeSpec> time_keys() {
                     .also_called({"dt", "dt_s", "time_step_s"}),
                 &TimeSpec::step_s)
       .optional(choice_key("integrator",
-                           "euler: the paper's implicit Euler, first order; bdf2: second order, as costly a step"),
+                           "bdf2: second order; euler: first order, as costly a step, that of Shao et al. 2021"),
                 Words<Integrator>{{"euler", Integrator::euler}, {"bdf2", Integrator::bdf2}}, &TimeSpec::integrator)
       .required(integer_key("steps", "number of time steps").from(1, 10000000).one_of_group(run), &TimeSpec::steps)
       .unbound(
@@ -70,9 +70,9 @@ KeyTable<TimeSpec> time_keys() {
               .from(0, 1),
           &TimeSpec::newton_tolerance)
       .optional(boolean_key("balance",
-                            "false: the paper's step; true: Newton starts from the last step's multipliers and also "
-                            "balances momentum, so equilibria do not depend on the step; helices need "
-                            "newton_iterations of 20 (direct and cg)"),
+                            "true: Newton starts from the last step's multipliers and also balances momentum, so "
+                            "equilibria do not depend on the step (methods direct and cg; the others never do); "
+                            "false: the step of Shao et al. 2021"),
                 &TimeSpec::balance)
       .optional(
           number_key("momentum_tolerance",
@@ -253,12 +253,6 @@ static void check_preconditioner(const Point& point, const JobFiles& job) {
 void check_method(const Point& point, const std::vector<std::string>& labels, const JobFiles& job) {
   check_condensed(point, labels, job);
   check_preconditioner(point, job);
-  if (const Method own = method(point);
-      point.has("time.balance") && point.number("time.balance") != 0 && own != Method::cg && own != Method::direct)
-    throw job_error(job.path, "time.balance",
-                    "true is not allowed with solve.method \"{}\", which solves no linear system; must be used with "
-                    "\"direct\" or \"cg\"",
-                    point.text("solve.method"));
   if (method(point) == Method::state_network && point.text("time.integrator") != "euler")
     throw job_error(
         job.path, "time.integrator",
@@ -270,8 +264,7 @@ void check_method(const Point& point, const std::vector<std::string>& labels, co
                     "\"{}\" is not allowed with evaluation \"paired\", whose reference solve advances the rod; must be "
                     "used with \"closed_loop\"",
                     point.text("solve.forcing"));
-  const Method own = method(point);
-  if (own == Method::cg || own == Method::direct) return;
+  if (solves_systems(method(point))) return;
   throw job_error(job.path, "solve.method",
                   "\"{}\" is not allowed with evaluation \"paired\", whose direct solve advances the rod; must be used "
                   "with \"closed_loop\"",

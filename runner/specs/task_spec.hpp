@@ -31,15 +31,17 @@ enum class Method {
 
 /// Whether the method applies a network's output unchecked.
 inline bool is_network(Method method) { return method == Method::end_to_end || method == Method::state_network; }
+/// Whether the method solves linear systems, so that its steps can balance momentum.
+inline bool solves_systems(Method method) { return method == Method::direct || method == Method::cg; }
 inline bool is_gauss_seidel(Method method) { return method == Method::pbd || method == Method::xpbd; }
 
 struct TimeSpec {
   double step_s = 0.02;
-  Integrator integrator = Integrator::euler;
+  Integrator integrator = Integrator::bdf2;
   int steps = 100;
-  int newton_iterations = 6;         ///< maximum per step; Gauss-Seidel: its iterations
+  int newton_iterations = 20;        ///< maximum per step; Gauss-Seidel: its iterations
   double newton_tolerance = 1e-9;    ///< Newton ends when max |C + alpha~ lambda| falls below it
-  bool balance = false;              ///< steps balance momentum (solver/rod/momentum_balance.hpp)
+  bool balance = true;               ///< steps of direct and cg balance momentum (solver/rod/momentum_balance.hpp)
   double momentum_tolerance = 1e-4;  ///< with `balance`, Newton also requires its residual below this
 };
 

@@ -19,6 +19,7 @@ constexpr double accurate = 0.3;  ///< of the tolerance, which the next linearis
 ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settings, double unit_dt, bool two_steps)
     : scene_(scene),
       settings_(settings),
+      tolerance_(settings.tolerance.value()),
       unit_dt_(unit_dt),
       two_steps_(two_steps),
       finder_(scene, settings, two_steps),
@@ -29,7 +30,7 @@ ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settin
   check_friction("friction", settings.friction);
   check_friction("obstacle_friction", settings.obstacle_friction.value_or(0));
   require(settings.sweeps >= 1, "sweeps", settings.sweeps, "at least 1");
-  require(settings.tolerance > 0 && std::isfinite(settings.tolerance), "tolerance", settings.tolerance, "positive");
+  require(tolerance_ > 0 && std::isfinite(tolerance_), "tolerance", tolerance_, "positive");
   require(settings.recovery >= 0 && settings.recovery <= 1, "recovery", settings.recovery, "from 0 to 1");
   require(settings.restitution >= 0 && settings.restitution <= 1, "restitution", settings.restitution, "from 0 to 1");
 }
@@ -80,7 +81,7 @@ bool ContactProjection::project() {
   linearise();
   const bool presses = fresh_ && std::any_of(contacts_.begin(), contacts_.end(),
                                              [](const Contact& contact) { return !contact.impulse.isZero(0); });
-  if (residual() < settings_.tolerance && !presses) return true;
+  if (residual() < tolerance_ && !presses) return true;
   motion_.respond();
   active_.clear();
   activate();
@@ -93,7 +94,7 @@ bool ContactProjection::project() {
       const double moved = sweep();
       ++sweeps;
       check_interrupted(static_cast<std::int64_t>(active_.size()) * 200);
-      converged = moved < (motion_.needs_settling() ? 1 : accurate) * settings_.tolerance;
+      converged = moved < (motion_.needs_settling() ? 1 : accurate) * tolerance_;
       if (!converged && sweeps < settings_.sweeps) accelerate(moved);
       if (!converged && motion_.needs_settling()) settle();
     }
@@ -197,7 +198,7 @@ double ContactProjection::residual() {
 // Adds the contacts that carry an impulse or would overlap with the motions so far. Returns whether there are any new.
 bool ContactProjection::activate() {
   const std::size_t before = active_.size();
-  const double overlap = before == 0 ? 0 : accurate * settings_.tolerance;
+  const double overlap = before == 0 ? 0 : accurate * tolerance_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Contact& contact = contacts_[c];
     Linear& at = linear_[c];

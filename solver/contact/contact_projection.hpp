@@ -42,6 +42,7 @@ struct ContactState {
 class ContactProjection {
  public:
   /// Impulses are forces times unit_dt^2 (contact_motion.hpp). `two_steps`: of BDF2 (rebound.hpp).
+  /// The settings have a tolerance.
   ContactProjection(Scene& scene, const ContactSettings& settings, double unit_dt, bool two_steps);
 
   /// Call at p, with the time at the end of the step.
@@ -130,6 +131,7 @@ class ContactProjection {
 
   Scene& scene_;
   ContactSettings settings_;
+  double tolerance_;
   double unit_dt_;
   bool two_steps_;
   ContactFinder finder_;

@@ -65,10 +65,16 @@ using Obstacle = std::variant<HalfSpace, Ball, Capsule>;
 struct ContactSettings {
   double friction = 0.3;                      ///< Coulomb's coefficient mu, at rest and sliding
   std::optional<double> obstacle_friction{};  ///< of rods with obstacles; else as between rods
-  double restitution = 0;   ///< e of Newton's law of impact, 0..1: the normal speed after, over that before
-  double tolerance = 1e-5;  ///< converged if no contact would move its segments by more, in their radii
-  int sweeps = 100;         ///< limit of sweeps over all contacts, there and back, after a projection of the rods
-  double recovery = 0.2;    ///< share of an earlier penetration that a step corrects, at most 1 % of a radius
+  double restitution = 0;           ///< e of Newton's law of impact, 0..1: the normal speed after, over that before
+  std::optional<double> tolerance;  ///< converged if no contact would move its segments by more, in their radii
+  int sweeps = 100;       ///< limit of sweeps over all contacts, there and back, after a projection of the rods
+  double recovery = 0.2;  ///< share of an earlier penetration that a step corrects, at most 1 % of a radius
+
+  /// By default the contacts of a second may err by a fiftieth of a radius, however many steps it has.
+  double tolerance_in(double dt) const {
+    constexpr double per_s = 0.02;
+    return tolerance.value_or(per_s * dt);
+  }
 };
 
 struct Scene {

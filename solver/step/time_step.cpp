@@ -1,5 +1,6 @@
 #include "solver/step/time_step.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "solver/linear/interruption.hpp"
@@ -38,14 +39,18 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
     Rod& rod = scene.rods[at(load.rod)];
     rod.load_torque_nm.assign(rod.segments.size(), Vector3::Zero());
   }
-  if (scene.contact)
-    contact_ = std::make_unique<ContactProjection>(scene, *scene.contact, rodsweep::constraint_dt(scene, settings.dt),
+  if (scene.contact) {
+    ContactSettings contact = *scene.contact;
+    contact.tolerance = contact.tolerance_in(settings.dt);
+    contact_ = std::make_unique<ContactProjection>(scene, contact, rodsweep::constraint_dt(scene, settings.dt),
                                                    settings.integrator == Integrator::bdf2);
+  }
 }
 
 StepReport TimeStepper::step(Projection& projection) {
   StepReport report;
-  report.balanced = projection.keep_balance(true);
+  const bool tries = projection.keep_balance(paused_ == 0);
+  report.balanced = tries;
 
   // Predict.
   start();
@@ -68,6 +73,8 @@ StepReport TimeStepper::step(Projection& projection) {
   if (newton == Newton::open) newton = iterate(projection, most, report);
   if (report.balanced)
     for (Rod& rod : scene_.rods) unstiffen(rod);
+  report.balanced &= newton == Newton::converged;
+  pause_balance(tries, report.balanced);
   if (newton == Newton::failed) return report;
 
   // Update.
@@ -81,6 +88,16 @@ StepReport TimeStepper::step(Projection& projection) {
   ++steps_;
   scene_.time_s = start_time_s_ + steps_ * settings_.dt;
   return report;
+}
+
+void TimeStepper::pause_balance(bool tried, bool balanced) {
+  constexpr int longest = 16;
+  if (!tried) {
+    paused_ = std::max(0, paused_ - 1);
+    return;
+  }
+  pause_ = balanced ? 0 : std::clamp(2 * pause_, 1, longest);
+  paused_ = pause_;
 }
 
 Reactions TimeStepper::reactions() const {

@@ -9,7 +9,8 @@
 // If the projection keeps the balance of momentum (momentum_balance.hpp), Newton starts from the last step's lambda,
 // from x + h (2 v - v_before) and q likewise. It ends when momentum is in balance as well. If two thirds of the
 // iterations do not come near that (a slender rod that hits the floor end-on can fold in many ways), the step is undone
-// and repeated as above.
+// and repeated as above. After a step that did not reach balance, 1, 2, 4, ... up to 16 steps do not try, so that scenes
+// where Newton cannot converge in time cost little more than without balance.
 // Loads: gravity and point loads as of the end of the step, and the wind's drag (wind.hpp), at the start of a step of
 // Euler, at the expected end of one of BDF2; in balance, torques of point loads act in g. A rod that hits something takes that step and the next two as
 // Euler's: with the velocity before an impact, BDF2 would rebound. Nothing allocates after construction, except for
@@ -36,7 +37,7 @@ struct StepSettings {
 struct StepReport {
   SolveOutcome outcome = SolveOutcome::converged;  ///< the last failure of a solve, else converged
   int newton_iterations = 0;                       ///< solves used: maximum over rods and contacts
-  bool balanced = false;                           ///< kept the balance of momentum
+  bool balanced = false;                           ///< momentum is in balance at the end
   int contacts = 0;                                ///< number of contacts
   double penetration = 0, contact_residual = 0;    ///< at the end of the step, see ContactState
 };
@@ -72,12 +73,14 @@ class TimeStepper {
   void take_back(Projection& projection, StepReport& report);
   Newton iterate(Projection& projection, int until, StepReport& report);
   double end_of_step() const { return start_time_s_ + (steps_ + 1) * settings_.dt; }
+  void pause_balance(bool tried, bool balanced);
   bool is_lost(Newton balanced) const;  ///< whether a balanced attempt that ended so must be undone
 
   Scene& scene_;
   StepSettings settings_;
   double start_time_s_;
   int steps_ = 0;
+  int pause_ = 0, paused_ = 0;  ///< steps that do not try to balance momentum: in a row, and still to come
   std::vector<FreeFlight> flights_;                     ///< of every rod
   std::vector<SegmentLoads> loads_;                     ///< point loads and wind, in free flight
   std::vector<Vector3> torques_nm_;                     ///< of point loads, about the segments' centres

@@ -43,8 +43,8 @@ class Errors(running.Scripts):
     def test_balance_has_errors_of_the_end_against_the_finest_step_in_balance(self):
         self.write(BALANCE, [0.3, 0.2, 0.1, 0], middle=7)
         self.assertEqual(self.table("balance.py", files=True)[1:],
-                         ["helix 0.02 the paper's step 0.3 0.15 3 0.3", "in balance 0.2 0.15 3 0.3",
-                          "0.01 the paper's step 0.1 0.3 3 0.3", "in balance reference 0.3 3 0.3"])
+                         ["helix 0.02 step of Shao et al. 0.3 0.15 3 0.2", "Euler in balance 0.2 0.15 3 0.2",
+                          "0.01 step of Shao et al. 0.1 0.3 3 0.2", "Euler in balance reference 0.3 3 0.2"])
         self.write(BALANCE, [0.3, 0.2, 0.1, 0], scenes=("helix", "bending_rod"))
         self.assertEqual([line.split(" 0.02")[0] for line in self.table("balance.py") if " 0.02 " in line],
                          ["helix", "bending rod"])
@@ -53,7 +53,7 @@ class Errors(running.Scripts):
         self.write({**BALANCE, "time.step_s": (0.02,)}, [0.1, 0])
         said = self.run_script("balance.py", "sweep.h5").stdout
         self.assertEqual([" ".join(line.split()) for line in said.splitlines()[1:] if line],
-                         ["helix 0.02 the paper's step 0.1 0.15 3 0.3", "in balance reference 0.15 3 0.3"])
+                         ["helix 0.02 step of Shao et al. 0.1 0.15 3 0.2", "Euler in balance reference 0.15 3 0.2"])
 
     def test_integrators_have_root_mean_squares_over_frames_against_the_smallest_step_of_bdf2(self):
         self.write_integrators()

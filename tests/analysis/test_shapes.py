@@ -270,8 +270,8 @@ SENTENCES = {   # (shape, script): what it says
     ("no rows of solves", "temporal"): "sweep.h5 has no rows of single solves (record.solves is \"summary\"), which this "
                                        "script needs",
     ("no zero guess", "combinations"): "sweep.h5 has no preconditioner or no zero guess to compare with",
-    ("plain", "balance"): "sweep.h5 has only one kind of step in the chosen simulations: sweep time.balance over false "
-                          "and true"}
+    ("plain", "balance"): "sweep.h5 has only one kind of step in the chosen simulations: sweep time.balance or "
+                          "time.integrator"}
 EVERY = 4    # a script that draws runs over every fourth shape
 
 

@@ -105,9 +105,7 @@ small: /solve/forcing = "eisenstat_walker" | solve.forcing: "eisenstat_walker" |
 small: /solve/forcing = {"grid": ["fixed", "eisenstat_walker"]} | solve.forcing: "eisenstat_walker" | evaluation "paired"
 small: /guesses; /solve = {"method": "pbd"} | solve.method: "pbd" | evaluation "paired" | must be used with "closed_loop"
 small: /guesses; /solve = {"method": "xpbd"} | solve.method: "xpbd" | evaluation "paired" | must be used with "closed_loop"
-closed: /solve = {"method": "pbd"}; /time/balance = true | time.balance: true | solve.method "pbd"
   | must be used with "direct" or "cg"
-closed: /solve = {"method": "xpbd"}; /time/balance = true | time.balance: true | solve.method "xpbd"
 closed: /solve = {"method": {"grid": ["direct", "end_to_end"]}} | solve.model: missing
 network: /guesses = ["zero"] | guesses: only solve.method "cg" uses initial guesses
 network: /solve/method = "state_network"; /time/integrator = "bdf2" | time.integrator: "bdf2" is not allowed

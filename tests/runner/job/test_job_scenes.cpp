@@ -117,7 +117,7 @@ TEST_CASE("a tree's keys become a tree, and a forest has rows of solves and syst
 
   const Json forest = tree_job("forest", R"(, "rows": 2, "columns": 3, "spacing_m": 4)");
   check_size(plan_of(forest), 6 * 27, 6 * 26);
-  CHECK(plan_of(forest).task(0).rows[Rows::solve].count == 10 * 6 * 6);
+  CHECK(plan_of(forest).task(0).rows[Rows::solve].count == 10 * 20 * 6);
   const Task data = plan_of(with("/scene", forest["scene"].dump(), data_job())).task(0);
   CHECK(data.rows[Rows::system].count == 4 * 6);
   CHECK(data.rows[Rows::system_segment].count == 4 * 6 * 27);

@@ -197,7 +197,7 @@ TaskRecord turned_by(const Json& torque_nm, double youngs_modulus_pa, bool conta
                        {"youngs_modulus_pa", youngs_modulus_pa},
                        {"torsion_modulus_pa", youngs_modulus_pa},
                        {"tip_torque_nm", torque_nm}});
-  job["time"]["step_s"] = step_s;
+  job["time"].update({{"step_s", step_s}, {"integrator", "euler"}, {"balance", false}});
   if (contact) job["scene"]["contact"] = Json::object();
   return record_of(job);
 }
@@ -208,6 +208,7 @@ TEST_CASE("a joint that turns past half a turn is named, and ends a task whose e
   CHECK_THAT(slipped.message, Catch::Matchers::StartsWith("a joint turned past half a turn"));
 
   Json job = five_steps(R"(["zero"])");
+  job["time"].update({{"integrator", "euler"}, {"balance", false}, {"newton_iterations", 6}});
   job["scene"].update({{"segments", 20}, {"clamp", "wall"}, {"youngs_modulus_pa", 1e6}, {"torsion_modulus_pa", 1e6}});
   job["scene"]["tip_motion"] = {{"rotation_deg", {900, 0, 0}}, {"duration_s", 0.05}};  // all in the last joint at first
   const TaskRecord twisted = record_of(job);
@@ -230,7 +231,7 @@ TEST_CASE("a task whose segments turn too far in a step says so") {
 TEST_CASE("a task whose rod blows up or is torn ends with what was done") {
   Json wild = five_steps(R"(["zero"])");
   wild["scene"]["tip_force_n"] = {0, 1e12, 0};
-  wild["time"]["newton_iterations"] = 1;
+  wild["time"].update({{"integrator", "euler"}, {"balance", false}, {"newton_iterations", 1}});
   const TaskRecord blown = record_of(wild);
   CHECK(blown.outcome == TaskOutcome::diverged);
   CHECK_THAT(blown.message, Catch::Matchers::ContainsSubstring("step 0: a joint is open by"));

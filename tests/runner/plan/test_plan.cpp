@@ -232,6 +232,7 @@ TEST_CASE("rows of every kind follow one another without gaps") {
                                                       {Rows::segment, is_data ? 0 : task.segments},
                                                       {Rows::system, systems},
                                                       {Rows::system_segment, systems * task.segments},
+                                                      {Rows::balanced_segment, systems * task.segments},
                                                       {Rows::system_joint, systems * task.joints}};
       for (const auto& [kind, count] : counts) {
         CHECK(task.rows[kind].count == count);

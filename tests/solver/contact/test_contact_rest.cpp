@@ -139,7 +139,7 @@ Scene crossed(int sweeps) {
 
 TEST_CASE("a step says how far its contacts are from where they want to be") {
   Touching t(crossed(100), 0.01, 30), cut_short(crossed(1), 0.01, 2);
-  const double tolerance = t.scene.contact->tolerance;
+  const double tolerance = t.scene.contact->tolerance_in(0.01);
   double left = 0;
   for (int i = 0; i < 30; ++i) {
     const StepReport report = t.step();

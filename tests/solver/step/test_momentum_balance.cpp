@@ -252,6 +252,7 @@ TEST_CASE("a step that cannot be balanced is made as the paper's, and a single s
   CHECK_FALSE(balanced.step().balanced);
   paper.step();
   CHECK(balanced.rod().position == paper.rod().position);
+  CHECK_FALSE(balanced.step().balanced);  // a pause
   CHECK(balanced.step().balanced);
   balanced.rod().velocity[3].x() = std::numeric_limits<double>::quiet_NaN();
   CHECK(balanced.try_step().outcome != SolveOutcome::converged);
@@ -299,13 +300,33 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("after steps that did not reach balance, ever more steps do not try, and one that does ends the pauses") {
+  Scene scene = build_scene(test::bending_rod(5));
+  DirectSolve direct(scene);
+  bool astray = true;
+  int step = 0;
+  std::vector<int> tried;
+  SolveBy solve([&](const LinearSystem& system, const SolvePosition& at, VectorX& x) {
+    const SolveOutcome outcome = direct.solve(system, at, 0, x);
+    if (system.keeps_balance() && at.newton == 0) tried.push_back(step);
+    if (astray && system.keeps_balance()) x *= -3;
+    return outcome;
+  });
+  LinearProjection projection(scene, solve, tolerance);
+  TimeStepper stepper(scene, {0.02, 40, 1e-9});
+  for (; step < 73; ++step) {
+    astray = step < 60;
+    CHECK(stepper.step(projection).balanced == (step >= 70));
+  }
+  CHECK(tried == std::vector<int>{0, 2, 5, 10, 19, 36, 53, 70, 71, 72});
+}
+
 TEST_CASE("with too few iterations to share, a step that is not in balance yet is no worse than the paper's") {
   for (const int iterations : {1, 3}) {
     Simulation simulation(build_scene(test::bending_rod(20)), {0.02, iterations, 1e-9}, 1e-12);
     double gap = 0;
     for (int step = 0; step < 40; ++step) {
       const StepReport report = simulation.step();
-      CHECK(report.balanced);
       CHECK(report.newton_iterations == iterations);
       gap = std::max(gap, joint_gap(simulation.rod()));
     }
