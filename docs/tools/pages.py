@@ -22,11 +22,12 @@ line. A text in @<<...>> replaces the visible text there, and is not shown:
     | bending rods@<<Bending rod>> | .00 **.00** |
     {% endfilter %}
 
-{{ score("10 %", "1 %") }} is the table of score.txt at these errors. {{ fastest("direct solve") }} is where a kind is the
-fastest there, as "helices at 1 % and trees at 1 and 0.1 %", {{ among("direct solve") }} where it is one of several whose
-intervals overlap, and {{ chosen("CG, Jacobi", "copingnet") }} where its setting has these words; {{ winners() }} is a
-table of the former two. {{ cheapest("net_gusts", {"8 × 8": "Net, scene.rows = 8:"}) }} is one of the fastest combinations,
-with a row for each of these blocks. {{ origins() }} says what made the tables.
+{{ score("10 %", "1 %") }} is the table of score.txt at these errors, {{ answer("1 %") }} a short one of factors.
+{{ fastest("direct solve") }} is where a kind is the fastest there, as "helices at 1 % and trees at 1 and 0.1 %", {{
+among("direct solve") }} where it is one of several whose intervals overlap, and {{ chosen("CG, Jacobi", "copingnet")
+}} where its setting has these words; {{ winners() }} is a table of the former two. {{ cheapest("net_gusts", {"8 × 8":
+"Net, scene.rows = 8:"}) }} is one of the fastest combinations, with a row for each of these blocks. {{ origins() }}
+says what made the tables.
 
 The numbers in the cells are styles. A cell has one number per column in its address, each with or without its
 interval, [.00, .00]. Text in `backticks` and columns called `-` do not change. In tables, a | in an address is \\|.
@@ -112,6 +113,23 @@ class Tables:
             if level in levels:
                 best = _fastest(answers)
                 rows.append([scene, level, *(_time_text(answers.get(kind), kind in best) for kind in self.KINDS)])
+        return _markdown(rows)
+
+    SHORT = {"direct solve": ("direct solve",), "CG, no learning": ("CG from zero", "CG, classical guess"),
+             "CG, learned guess": ("CG, learned guess",), "Gauss–Seidel": ("Gauss-Seidel",)}
+
+    def answer(self, level):
+        """A Markdown table: the time of the cheapest setting of a few kinds at an error, over the fastest's. Bold: the
+        fastest kinds. A scene has a row if a setting keeps to the error on the test draws."""
+        rows = [["", *self.SHORT]]
+        for (scene, of), answers in self._scores.items():
+            kept = {name: min((answers[kind].time for kind in kinds if kind in answers and answers[kind].kept), default=None)
+                    for name, kinds in self.SHORT.items()}
+            times = [time for time in kept.values() if time is not None]
+            if of == level and times:
+                best = _fastest(answers)
+                rows.append([scene, *("–" if time is None else _bold(f"{time / min(times):.2g}", best & set(self.SHORT[name]))
+                                      for name, time in kept.items())])
         return _markdown(rows)
 
     def fastest(self, kind):
@@ -236,11 +254,15 @@ def _fastest(answers):
     return {kind for kind, answer in kept.items() if answer.low <= least}
 
 
+def _bold(text, is_bold):
+    return f"**{text}**" if is_bold else text
+
+
 def _time_text(answer, fastest):
     if answer is None:
         return "–"
     text = f"{answer.time.normalize():f}"
-    return f"**{text}**" if fastest else text if answer.kept else f"({text})"
+    return _bold(text, fastest) if fastest or answer.kept else f"({text})"
 
 
 def _places(found):
@@ -311,8 +333,8 @@ def rendered(template, folder=TABLES):
     environment.filters["table"] = tables.table
     with open(template, encoding="utf-8") as file:
         return environment.from_string(file.read()).render(
-            cell=tables.cell, score=tables.score, fastest=tables.fastest, among=tables.among, chosen=tables.chosen,
-            winners=tables.winners, cheapest=tables.cheapest, origins=tables.origins)
+            cell=tables.cell, score=tables.score, answer=tables.answer, fastest=tables.fastest, among=tables.among,
+            chosen=tables.chosen, winners=tables.winners, cheapest=tables.cheapest, origins=tables.origins)
 
 
 def templates(root=ROOT):
