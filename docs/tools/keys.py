@@ -177,7 +177,7 @@ def page(text):
     obstacles = [f"`{{\"{name}\": {{...}}}}`, {child['description']}:\n\n" + keys(f"scene.obstacles.item.{name}")
                  for name, child in schema.named("scene.obstacles.item")["properties"].items()]
     parts = [HEAD,
-             section("The job", "Swept may be `evaluation`, `scene`, `time`, `solve`, and each of the `guesses`.",
+             section("The job", "Swept may be `evaluation`, `scene`, `start`, `time`, `solve`, and each of the `guesses`.",
                      written(*table(schema, schema.all))),
              section("`scene`", "All may be swept but `type`, for which whole scenes are.", keys("scene")),
              section("`scene.section`", "All may be swept but `type`, for which whole sections are.",
@@ -188,7 +188,9 @@ def page(text):
              *(section(f"`scene.{name}`", "A list; all may be swept.", keys(f"scene.{name}.item"))
                for name in ("loads", "motions", "gravity_changes")),
              section("`scene.obstacles`", "A list of objects with one key each; all may be swept.", *obstacles),
+             section("`start`", "All may be swept.", keys("start")),
              section("`time`", "All may be swept.", keys("time")),
+             section("`time.until`", "It may be swept.", keys("time.until")),
              section("`solve`", "All may be swept.", keys("solve")),
              guesses(schema)]
     for name in ("record", "network", "training"):

@@ -52,6 +52,9 @@ std::vector<Column> all_columns() {
   const auto force_steps = columns_of(Rows::force_step, &R::steps);
   const auto frame_joints = columns_of(Rows::frame_joint, &R::trajectories);
   const auto joints = columns_of(Rows::joint, &R::trajectories, &Trajectories::joints);
+  using States = Trajectories::States;
+  const auto states = columns_of(Rows::state_segment, &R::trajectories, &Trajectories::states);
+  const auto state_joints = columns_of(Rows::state_joint, &R::trajectories, &Trajectories::states);
   const auto systems = columns_of(Rows::system, &R::systems);
   const auto system_segments = columns_of(Rows::system_segment, &R::systems);
   const auto balanced_segments = columns_of(Rows::balanced_segment, &R::systems);
@@ -172,6 +175,19 @@ std::vector<Column> all_columns() {
           "/trajectories/joints/first", &Joints::first, none, "1",
           "first segment of the joint, from 0 within the frame and within the task's rows of /trajectories/segments"),
       joints("/trajectories/joints/second", &Joints::second, none, "1", "second segment of the joint"),
+      states("/trajectories/state/velocity_m_s", &States::velocity_m_s, xyz, "m/s", "velocity of the segment"),
+      states("/trajectories/state/angular_velocity_rad_s", &States::angular_velocity_rad_s, xyz, "rad/s",
+             "angular velocity of the segment, world frame"),
+      states("/trajectories/state/before_position_m", &States::before_position_m, xyz, "m",
+             "segment centre a step before; NaN, as the other columns of a step before: the next step does not use it"),
+      states("/trajectories/state/before_orientation", &States::before_orientation, wxyz, "1",
+             "segment orientation a step before"),
+      states("/trajectories/state/before_velocity_m_s", &States::before_velocity_m_s, xyz, "m/s",
+             "velocity a step before"),
+      states("/trajectories/state/before_angular_velocity_rad_s", &States::before_angular_velocity_rad_s, xyz, "rad/s",
+             "angular velocity a step before"),
+      state_joints("/trajectories/state/lambda", &States::lambda, six, "kg m^2",
+                   "multipliers of the joint after the step"),
 
       systems("/systems/step", &Systems::step, none, "1",
               "time step, from 0; -1: a Newton iteration that was not needed"),

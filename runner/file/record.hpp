@@ -112,6 +112,12 @@ struct TaskRecord {
     Cells<double> joint_position_m, joint_force_n, joint_moment_nm;  ///< [frame x joint, 3]
     Segments segments;
     Joints joints;
+
+    struct States {  // [frame x segment ...]
+      Cells<double> velocity_m_s, angular_velocity_rad_s;
+      Cells<double> before_position_m, before_orientation, before_velocity_m_s, before_angular_velocity_rad_s;
+      Cells<double> lambda;  ///< [frame x joint, 6]
+    } states;
   } trajectories;
 
   /// The linear systems of a data set (runner/dataset/stored_systems.hpp).

@@ -15,13 +15,14 @@ namespace fs = std::filesystem;
 
 /// Which optional kinds of rows a file has.
 struct Kinds {
-  bool contact, balance, force, frame_joint;
+  bool contact, balance, force, frame_joint, state;
 
   explicit Kinds(const hdf5::File& file)
       : contact(hdf5::exists(file.id(), "/steps/contacts")),
         balance(hdf5::exists(file.id(), "/systems/segments/free_position_m")),
         force(hdf5::exists(file.id(), "/steps/clamp_force_n")),
-        frame_joint(hdf5::exists(file.id(), "/trajectories/joint_force_n")) {}
+        frame_joint(hdf5::exists(file.id(), "/trajectories/joint_force_n")),
+        state(hdf5::exists(file.id(), "/trajectories/state/lambda")) {}
 };
 
 /// Completes a task whose planned columns were read. Throws Damage for numbers of rows that no file has.
@@ -35,8 +36,10 @@ void complete(Task& task, const Kinds& kinds) {
   if (kinds.force) rows[Rows::force_step].count = task.steps;
   const std::int64_t joints = kinds.frame_joint ? task.joints : 0;
   if (__builtin_mul_overflow(task.frames, task.segments, &rows[Rows::frame_segment].count) ||
-      __builtin_mul_overflow(task.frames, joints, &rows[Rows::frame_joint].count))
+      __builtin_mul_overflow(task.frames, joints, &rows[Rows::frame_joint].count) ||
+      __builtin_mul_overflow(task.frames, kinds.state ? task.joints : 0, &rows[Rows::state_joint].count))
     throw Damage("a task has rows outside /trajectories");
+  if (kinds.state) rows[Rows::state_segment].count = rows[Rows::frame_segment].count;
   rows[Rows::segment].count = task.frames > 0 ? task.segments : 0;
   rows[Rows::joint].count = task.frames > 0 ? joints : 0;
   for (const RowRange& range : rows)

@@ -10,7 +10,7 @@
 namespace rodsweep {
 
 /// What a file must be, as the row of its key says. Several keys may have the same file.
-enum class FileKind { any, model, data_set, skeleton, curves, plugin, python_guess, python_preconditioner };
+enum class FileKind { any, model, data_set, skeleton, curves, results, plugin, python_guess, python_preconditioner };
 
 /// A key with a file.
 struct FileUse {

@@ -9,7 +9,9 @@
 
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/file/file_reading.hpp"
+#include "runner/file/task_reader.hpp"
 #include "runner/measure/shared_inputs.hpp"
+#include "runner/measure/start_state.hpp"
 #include "runner/text/job_error.hpp"
 #include "solver/factor/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
@@ -29,6 +31,7 @@ void open_input(const std::filesystem::path& path, FileKind kind) {
     case FileKind::any: return;
     case FileKind::model: shared_model(path); return;
     case FileKind::data_set: DatasetReader{path}; return;
+    case FileKind::results: TaskReader{path}; return;
     case FileKind::skeleton:
     case FileKind::curves: return;  // the plan reads these
     case FileKind::plugin: Plugin(plugin_source({path, ""})); return;
@@ -90,7 +93,19 @@ void check_learned(const Plan& plan, const std::filesystem::path& model) {
                         " is not allowed: its network has no factors; must be a model with the processor \"factors\"");
 }
 
+/// Of the first sample of each point.
+void check_start(const Plan& plan, const Task& task, const TaskSpec& spec) {
+  if (!spec.start || task.sample > 0) return;
+  try {
+    Scene scene = build_scene(spec.scene);
+    StartState(*spec.start, scene);
+  } catch (const FileError& error) {
+    throw job_error(plan.job().path, "start.file", error.what());
+  }
+}
+
 void check(const Plan& plan, const Task& task, const TaskSpec& spec) {
+  check_start(plan, task, spec);
   if (spec.solve.preconditioner == Preconditioner::learned) check_learned(plan, spec.solve.learned->model);
   if (is_network(spec.solve.method))
     check_model(plan, "solve.model", spec.solve.model, spec.solve.method == Method::state_network);

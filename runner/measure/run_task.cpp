@@ -10,7 +10,9 @@
 #include "runner/measure/measured_solve.hpp"
 #include "runner/measure/projections.hpp"
 #include "runner/measure/simulation_log.hpp"
+#include "runner/measure/start_state.hpp"
 #include "solver/linear/interruption.hpp"
+#include "solver/step/relaxation.hpp"
 #include "solver/step/stopwatch.hpp"
 #include "solver/step/time_step.hpp"
 
@@ -42,6 +44,8 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
   const auto is_late = [&] { return spec.time_limit_s > 0 && watch.seconds() > spec.time_limit_s; };
   const Interruptible interruptible([&] { return hooks.stop() || is_late(); }, hooks.clock);
   Scene scene = build_scene(spec.scene);
+  std::optional<StartState> start;
+  if (spec.start) start.emplace(*spec.start, scene);
   MeasuredSolve solve(scene, spec, record);
   std::optional<StoringSolve> storing;
   if (const int iterations = spec.output.stored_iterations(spec.time.newton_iterations); iterations > 0)
@@ -51,6 +55,9 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
   if (hooks.observe) outermost = &observed.emplace(scene, *outermost, hooks.observe);
   const std::unique_ptr<Projection> projection = make_projection(scene, spec, record, *outermost);
   TimeStepper stepper(scene, step_settings(spec.time));
+  if (start) start->continue_steps(stepper);
+  std::optional<Relaxation> relaxation;
+  if (spec.time.until) relaxation.emplace(scene, spec.time.until->rest, spec.time.step_s);
 
   SimulationLog simulation(task, spec, record, scene, stepper);
   for (int step = 0; step < spec.time.steps; ++step) {
@@ -66,7 +73,14 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
     record.steps.cg_iterations[row] = effort.iterations;
     record.steps.products[row] = effort.products;
     if (!simulation.finish_step(step, scene, report)) break;
+    if (!relaxation) continue;
+    if (relaxation->settle(scene)) {
+      simulation.finish_at_rest(step, scene);
+      break;
+    }
+    simulation.lacks(relaxation->lacking());
   }
+  simulation.finish();
   solve.finish();
   return true;
 }

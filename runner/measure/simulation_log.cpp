@@ -180,8 +180,17 @@ bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& 
     }
   }
   note_turns(scene);
-  if (step + 1 == task_.steps && record_.outcome == TaskOutcome::ok) record_.message = warnings();
   return true;
+}
+
+void SimulationLog::finish_at_rest(int step, const Scene& scene) {
+  const int every = spec_.output.trajectory_every;
+  if (every > 0 && (step + 1) % every != 0) log_frame(static_cast<std::size_t>((step + 1) / every + 1), scene);
+  lacking_ = 0;
+}
+
+void SimulationLog::finish() {
+  if (record_.outcome == TaskOutcome::ok) record_.message = warnings();
 }
 
 /// A joint whose rotation from rest passed half a turn in the last step, where the torque changes its sign; "" if none.
@@ -218,10 +227,11 @@ std::string SimulationLog::warnings() const {
         rolls ? most_rolled : most_tumbled, rolls ? "about its axis, in contact," : "across its axis",
         rounded_down(spec_.time.step_s / excess)));
   }
+  if (lacking_ > 0)
+    all.push_back(fmt::format("not at rest: a segment lacks {:.0e} of the largest force: use more steps", lacking_));
   if (unbalanced_ > 0)
-    all.push_back(
-        fmt::format("Newton did not balance momentum in {:g} % of the steps: use a shorter step_s where forces matter",
-                    std::max(1.0, rounded_down(100.0 * unbalanced_ / static_cast<double>(task_.steps)))));
+    all.push_back(fmt::format("{:g} % of the steps do not balance momentum",
+                              std::max(1.0, rounded_down(100.0 * unbalanced_ / static_cast<double>(task_.steps)))));
   return fmt::format("{}", fmt::join(all, "; "));
 }
 
@@ -241,6 +251,28 @@ void SimulationLog::log_frame(std::size_t frame, const Scene& scene) {
     row += rod.segments.size();
   }
   if (spec_.output.forces) log_joints(frame, scene);
+  if (spec_.output.states) log_state(frame, scene);
+}
+
+void SimulationLog::log_state(std::size_t frame, const Scene& scene) {
+  TaskRecord::Trajectories::States& states = record_.trajectories.states;
+  std::size_t row = frame * static_cast<std::size_t>(task_.segments),
+              joint = frame * static_cast<std::size_t>(task_.joints);
+  for (std::size_t r = 0; r < scene.rods.size(); ++r) {
+    const Rod& rod = scene.rods[r];
+    store(rod.velocity, states.velocity_m_s.row(row));
+    store(rod.angular_velocity, states.angular_velocity_rad_s.row(row));
+    const RodMotion before = stepper_.before(static_cast<int>(r));
+    if (!before.position.empty()) {
+      store(before.position, states.before_position_m.row(row));
+      store(before.orientation, states.before_orientation.row(row));
+      store(before.velocity, states.before_velocity_m_s.row(row));
+      store(before.angular_velocity, states.before_angular_velocity_rad_s.row(row));
+    }
+    if (rod.joint_count() > 0) std::copy(rod.lambda.begin(), rod.lambda.end(), states.lambda.row(joint));
+    row += rod.segments.size();
+    joint += rod.joints.size();
+  }
 }
 
 void SimulationLog::log_reactions(std::size_t step) {

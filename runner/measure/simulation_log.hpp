@@ -29,6 +29,14 @@ class SimulationLog {
   /// `scene` is the state after the step. Returns false if a failure ends the task.
   bool finish_step(int step, const Scene& scene, const StepReport& report);
 
+  /// Call after the last step.
+  void finish();
+
+  /// The scene is at rest after this step, the task's last: keeps it as a frame.
+  void finish_at_rest(int step, const Scene& scene);
+  /// Not at rest: the part of the largest force that is missing.
+  void lacks(double force) { lacking_ = force; }
+
  private:
   /// Intermediate results shared by several observables of a rod.
   struct Observed {
@@ -44,6 +52,7 @@ class SimulationLog {
   void log_frame(std::size_t frame, const Scene& scene);
   void log_reactions(std::size_t step);
   void log_joints(std::size_t frame, const Scene& scene);
+  void log_state(std::size_t frame, const Scene& scene);
 
   const Task& task_;
   const TaskSpec& spec_;
@@ -51,8 +60,9 @@ class SimulationLog {
   const TimeStepper& stepper_;
   std::vector<Observed> observed_;  ///< by rod
   double initial_length_ = 0;
-  int unbalanced_ = 0;               ///< steps that should have balanced momentum
-  bool slipped_ = false;             ///< a joint turned past half a turn
+  int unbalanced_ = 0;    ///< steps that should have balanced momentum
+  bool slipped_ = false;  ///< a joint turned past half a turn
+  double lacking_ = 0;
   double tumbled_ = 0, rolled_ = 0;  ///< the most that a segment turned across and about its axis in a step [rad]
 };
 

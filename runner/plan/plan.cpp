@@ -45,6 +45,7 @@ void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const O
   task.joints = joint_count(scene);
   task.steps = time.steps;
   task.frames = output.trajectory_every > 0 ? 1 + task.steps / output.trajectory_every : 0;
+  if (time.until && task.frames > 0 && task.steps % output.trajectory_every != 0) ++task.frames;  // at rest
   const std::int64_t stored = task.steps * output.stored_iterations(time.newton_iterations);
   const auto set = [&](Rows kind, std::initializer_list<std::int64_t> factors) {
     task.rows[kind].count = product(factors);
@@ -58,6 +59,8 @@ void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const O
   set(Rows::force_step, {output.forces ? task.steps : 0});
   set(Rows::frame_joint, {output.forces ? task.frames : 0, task.joints});
   set(Rows::joint, {output.forces && task.frames > 0 ? task.joints : 0});
+  set(Rows::state_segment, {output.states ? task.frames : 0, task.segments});
+  set(Rows::state_joint, {output.states ? task.frames : 0, task.joints});
   set(Rows::system, {stored, rods});
   set(Rows::system_segment, {stored, task.segments});
   set(Rows::system_joint, {stored, task.joints});
@@ -141,6 +144,7 @@ TaskSpec Plan::spec(std::int64_t index) const {
   fill(point, task.point);
   TaskSpec spec;
   spec.scene = scene_spec(point, job_);
+  spec.start = start_spec(point, job_);
   spec.time = time_spec(point, job_);
   spec.solve = solve_spec(point, job_);
   spec.evaluation = evaluation(point);

@@ -25,9 +25,11 @@ enum class Rows {
   balanced_segment,  ///< as system_segment, in files where any task balances momentum in its steps
   force_step,        ///< as step, if forces are recorded
   frame_joint,       ///< by frame, joint, if forces are recorded
-  joint              ///< of a trajectory with forces
+  joint,             ///< of a trajectory with forces
+  state_segment,     ///< as frame_segment, if states are recorded
+  state_joint        ///< by frame, joint, if states are recorded
 };
-inline constexpr std::size_t row_kinds = static_cast<std::size_t>(Rows::joint) + 1;
+inline constexpr std::size_t row_kinds = static_cast<std::size_t>(Rows::state_joint) + 1;
 
 /// Whether columns of these rows may be missing in a file that has their base kind.
 constexpr bool is_optional(Rows rows) {
@@ -37,7 +39,9 @@ constexpr bool is_optional(Rows rows) {
     case Rows::balanced_segment:
     case Rows::force_step:
     case Rows::frame_joint:
-    case Rows::joint: return true;
+    case Rows::joint:
+    case Rows::state_segment:
+    case Rows::state_joint: return true;
     default: return false;
   }
 }

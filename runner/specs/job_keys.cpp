@@ -36,6 +36,9 @@ Key record() {
                      .from(0, 10000000)
                      .defaults_to(0)
                      .setting(),
+                 boolean_key("states", "in frames: velocities and what else a simulation needs to start from them")
+                     .defaults_to(false)
+                     .setting(),
                  boolean_key("forces",
                              "forces and moments of joints in frames, and those of clamps and obstacles in steps")
                      .defaults_to(false)
@@ -75,6 +78,7 @@ std::vector<Key> keys_of_simulations() {
           .defaults_to("paired")
           .only({"sweep"}, no_guesses),
       scene_key(),
+      start_key().only({"sweep"}, "a data set starts as its scene does"),
       time_key(),
       solve_key().only({"sweep"}, no_guesses),
       guesses_key("guesses", "initial guesses of cg")

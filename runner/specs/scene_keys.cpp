@@ -159,6 +159,11 @@ void add_rods(Table& table) {
                  &Rods::gravity_m_s2);
   table.optional(number_key("damping_per_s", "viscous damping: velocities decay at this rate").in("1/s").from(0, 1e6),
                  &Rods::damping_per_s);
+  table.optional(
+      number_key("internal_damping_s", "damping of the material, tau of stress E (strain + tau d strain / dt)")
+          .in("s")
+          .from(0, 1e6),
+      &Rods::internal_damping_s);
   table.optional(vector_key("tip_force_n",
                             "constant force on the free end; lattices: total force on the nodes with the greatest x")
                      .in("N")

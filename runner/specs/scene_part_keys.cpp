@@ -223,7 +223,7 @@ KeyTable<ContactSettings> contact_keys() {
                 &Settings::restitution)
       .optional(number_key("tolerance",
                            "contacts have converged if no correction of a segment is larger than this, in its radii; "
-                           "\"from_step\": 0.02 / s times step_s")
+                           "\"from_step\" is 0.02 / s times step_s")
                     .positive(1)
                     .or_word("from_step"),
                 &Settings::tolerance)

@@ -46,6 +46,30 @@ int whole_steps(double duration_s, double step_s, const JobFiles& job) {
   return static_cast<int>(steps);
 }
 
+KeyTable<StartSpec> start_keys() {
+  return KeyTable<StartSpec>()
+      .required(file_key("file", FileKind::results, "results with record.trajectory_every and record.states"),
+                &StartSpec::file)
+      .optional(integer_key("task", "task of that file, with the same segments and joints").from(0, 2147483647),
+                &StartSpec::task)
+      .optional(number_key("time_s", "time of a frame").in("s").from(0, 1e9).or_word("last"), &StartSpec::time_s)
+      .optional(number_key("clock_s",
+                           "time at the start of this simulation, for loads and motions that change; "
+                           "\"continued\" is that of the frame")
+                    .in("s")
+                    .from(-1e9, 1e9)
+                    .or_word("continued"),
+                &StartSpec::clock_s);
+}
+
+KeyTable<Until> until_keys() {
+  return KeyTable<Until>().required(
+      number_key("rest",
+                 "steps with kinetic damping end when no segment lacks more than this part of the largest force")
+          .positive(1),
+      &Until::rest);
+}
+
 KeyTable<TimeSpec> time_keys() {
   constexpr const char* run = "length of the run";
   return KeyTable<TimeSpec>()
@@ -55,9 +79,11 @@ KeyTable<TimeSpec> time_keys() {
                     .plausibly(1e-6, 1)
                     .also_called({"dt", "dt_s", "time_step_s"}),
                 &TimeSpec::step_s)
-      .optional(choice_key("integrator",
-                           "bdf2: second order; euler: first order, as costly a step, that of Shao et al. 2021"),
-                Words<Integrator>{{"euler", Integrator::euler}, {"bdf2", Integrator::bdf2}}, &TimeSpec::integrator)
+      .optional(
+          choice_key("integrator",
+                     "bdf2: second order; euler: first order, as costly a step, that of Shao et al. 2021, of \"until\" "
+                     "and of state_network"),
+          Words<Integrator>{{"euler", Integrator::euler}, {"bdf2", Integrator::bdf2}}, &TimeSpec::integrator)
       .required(integer_key("steps", "number of time steps").from(1, 10000000).one_of_group(run), &TimeSpec::steps)
       .unbound(
           number_key("duration_s", "simulated time, a whole number of steps").in("s").positive(1e9).one_of_group(run))
@@ -78,7 +104,12 @@ KeyTable<TimeSpec> time_keys() {
           number_key("momentum_tolerance",
                      "with `balance`: allowed momentum residual of a segment, relative to the greatest joint force")
               .positive(1),
-          &TimeSpec::momentum_tolerance);
+          &TimeSpec::momentum_tolerance)
+      .optional(object_key("until",
+                           "finds an equilibrium: steps of Euler end when forces balance; else \"steps\" is the "
+                           "limit. \"steps\": all steps are made")
+                    .or_word("steps"),
+                until_keys(), &TimeSpec::until);
 }
 
 KeyTable<LearnedPreconditioner> learned_preconditioner_keys() {
@@ -169,6 +200,22 @@ KeyTable<SolveSpec> solve_keys() {
 
 }  // namespace
 
+Key start_key() {
+  return object_key("start",
+                    "starts from a frame of another simulation, with its velocities, instead of the scene's own start",
+                    start_keys().keys())
+      .or_word("scene")
+      .defaults_to("scene");
+}
+
+std::optional<StartSpec> start_spec(const Point& point, const JobFiles& job) {
+  static const KeyTable<StartSpec> keys = start_keys();
+  if (!point.has("start.file")) return std::nullopt;
+  StartSpec start;
+  keys.fill(start, {point, job, "start"});
+  return start;
+}
+
 Key time_key() { return object_key("time", "time stepping", time_keys().keys()); }
 
 Key solve_key() {
@@ -184,6 +231,10 @@ TimeSpec time_spec(const Point& point, const JobFiles& job) {
   if (is_gauss_seidel(method(point))) {  // a swept method has no per-method default
     const bool given = point.has("solve.iterations");
     time.newton_iterations = given ? static_cast<int>(point.number("solve.iterations")) : gauss_seidel_iterations;
+  }
+  if (time.until || method(point) == Method::state_network) time.integrator = Integrator::euler;
+  if (time.until) {
+    time.momentum_tolerance = std::min(time.momentum_tolerance, time.until->rest);
   }
   return time;
 }
@@ -206,15 +257,27 @@ Evaluation evaluation(const Point& point) {
 
 OutputSpec output_spec(const nlohmann::ordered_json& record) {
   const std::string norms = record.value("norms", "one");
-  OutputSpec spec{record["solves"] == "all", norms != "none",
-                  norms == "both",           record["trajectory_every"].get<int>(),
-                  StoredSystems::none,       record["forces"].get<bool>()};
+  OutputSpec spec{record["solves"] == "all",
+                  norms != "none",
+                  norms == "both",
+                  record["trajectory_every"].get<int>(),
+                  StoredSystems::none,
+                  record["states"].get<bool>(),
+                  record["forces"].get<bool>()};
   if (record.contains("systems")) spec.systems = record["systems"] == "all" ? StoredSystems::all : StoredSystems::first;
   return spec;
 }
 
 void check_output(const OutputSpec& output, const Point& point, const JobFiles& job) {
-  if (const Method own = method(point); output.forces && (own == Method::pbd || own == Method::state_network))
+  const Method own = method(point);
+  const bool has_multipliers = own != Method::pbd && own != Method::state_network;
+  if (point.number("scene.internal_damping_s") != 0 && (!has_multipliers || output.systems != StoredSystems::none))
+    throw job_error(job.path, "scene.internal_damping_s", "{:g} is not allowed with {}; must be 0",
+                    point.number("scene.internal_damping_s"),
+                    has_multipliers
+                        ? "kind \"dataset\", whose systems do not have it"
+                        : fmt::format("solve.method \"{}\", which has no compliances", point.text("solve.method")));
+  if (output.forces && !has_multipliers)
     throw job_error(job.path, "record.forces",
                     "true is not allowed with solve.method \"{}\", which has no multipliers; must be used with another "
                     "method, such as \"direct\"",
@@ -253,11 +316,6 @@ static void check_preconditioner(const Point& point, const JobFiles& job) {
 void check_method(const Point& point, const std::vector<std::string>& labels, const JobFiles& job) {
   check_condensed(point, labels, job);
   check_preconditioner(point, job);
-  if (method(point) == Method::state_network && point.text("time.integrator") != "euler")
-    throw job_error(
-        job.path, "time.integrator",
-        "\"{}\" is not allowed with solve.method \"state_network\", which takes steps of Euler; must be \"euler\"",
-        point.text("time.integrator"));
   if (evaluation(point) == Evaluation::closed_loop) return;
   if (point.has("solve.forcing") && point.text("solve.forcing") != "fixed")
     throw job_error(job.path, "solve.forcing",

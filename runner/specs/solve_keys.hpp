@@ -13,9 +13,11 @@
 
 namespace rodsweep {
 
+Key start_key();
 Key time_key();
 Key solve_key();
 
+std::optional<StartSpec> start_spec(const Point& point, const JobFiles& job);
 TimeSpec time_spec(const Point& point, const JobFiles& job);
 SolveSpec solve_spec(const Point& point, const JobFiles& job);  ///< default: the direct solve (data sets)
 Evaluation evaluation(const Point& point);                      ///< default: paired

@@ -35,6 +35,11 @@ inline bool is_network(Method method) { return method == Method::end_to_end || m
 inline bool solves_systems(Method method) { return method == Method::direct || method == Method::cg; }
 inline bool is_gauss_seidel(Method method) { return method == Method::pbd || method == Method::xpbd; }
 
+/// Ends a simulation early: at rest (solver/step/relaxation.hpp).
+struct Until {
+  double rest = 0;  ///< tolerance of the forces
+};
+
 struct TimeSpec {
   double step_s = 0.02;
   Integrator integrator = Integrator::bdf2;
@@ -43,6 +48,7 @@ struct TimeSpec {
   double newton_tolerance = 1e-9;    ///< Newton ends when max |C + alpha~ lambda| falls below it
   bool balance = true;               ///< steps of direct and cg balance momentum (solver/rod/momentum_balance.hpp)
   double momentum_tolerance = 1e-4;  ///< with `balance`, Newton also requires its residual below this
+  std::optional<Until> until;        ///< else all steps; its steps are those of Euler, and balance as well as it asks
 };
 
 inline StepSettings step_settings(const TimeSpec& time) {
@@ -105,6 +111,7 @@ struct OutputSpec {
   bool other_norm = true;    ///< also count iterations in the norm that the job doesn't use
   int trajectory_every = 0;  ///< steps between frames; frame 0 is the initial state; 0: no trajectory
   StoredSystems systems = StoredSystems::none;
+  bool states = false;  ///< in frames, for a start from them
   bool forces = false;  ///< of joints in frames, of clamps and obstacles in steps
 
   /// Number of Newton iterations per step, from the first, whose systems are stored.
@@ -114,9 +121,18 @@ struct OutputSpec {
   }
 };
 
+/// A frame of another simulation, with its state, from which this one starts.
+struct StartSpec {
+  std::filesystem::path file;
+  int task = 0;
+  std::optional<double> time_s;   ///< of the frame; empty: the last one
+  std::optional<double> clock_s;  ///< time at the start of this simulation; empty: that of the frame
+};
+
 /// The input of run_task().
 struct TaskSpec {
   SceneSpec scene;
+  std::optional<StartSpec> start;
   TimeSpec time;
   SolveSpec solve;
   Evaluation evaluation = Evaluation::paired;

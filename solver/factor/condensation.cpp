@@ -76,7 +76,7 @@ bool Condensation::assemble(const Rod& rod, const Linearization& linearization, 
   rod_ = &rod;
   linearization_ = &linearization;
   for (std::size_t k = 0; k < rod.joints.size(); ++k)
-    stiffness_[k] = load6(Vector6(dt * dt * rod.joints[k].compliance.cwiseInverse()).data());
+    stiffness_[k] = load6(Vector6(rod.softness(k, 1 / (dt * dt)).cwiseInverse()).data());
   for (std::size_t s = 0; s < rod.segments.size(); ++s) inverse_mass_[s] = motion(rod.segments[s], broadcast(1));
   for (Block6& block : matrix_.blocks) block = Block6{};
   for (int c = 0; c < matrix_.block_rows(); ++c) {

@@ -90,7 +90,7 @@ void ConstraintProduct::update(const Rod& rod, const Linearization& linearizatio
   for (std::size_t g = 0; g < groups_.size(); ++g) groups_[g].turn = linearization.turns[g];
   for (std::size_t s = 0; s < mobility_.size(); ++s) mobility_[s] = motion(rod.segments[s], broadcast(1));
   for (std::size_t k = 0; k < rod.joints.size(); ++k)
-    softness_.segment<6>(static_cast<Eigen::Index>(6 * k)) = inverse_dt2 * rod.joints[k].compliance;
+    softness_.segment<6>(static_cast<Eigen::Index>(6 * k)) = rod.softness(k, inverse_dt2);
 }
 
 void ConstraintProduct::multiply(const double* x, double* y) const {

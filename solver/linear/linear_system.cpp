@@ -72,8 +72,7 @@ void LinearSystem::assemble_linearized(const Rod& rod, double dt) {
   if (product_) product_->update(rod, linearization_, inverse_dt2);
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
-    rhs_.segment<6>(row) = -linearization_.constraint.segment<6>(row) -
-                           inverse_dt2 * rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
+    rhs_.segment<6>(row) = -rod.residual(k, linearization_.constraint.segment<6>(row), inverse_dt2);
   }
   newton_residual_ = largest_rhs();
 }
@@ -89,7 +88,7 @@ void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
         const JointEnd& at_v = sides_[at(v)];
         Block6& block = matrix_.blocks[at(next->block)];
         if (u == v) {
-          const Vector6 softness = inverse_dt2 * rod.joints[at(at_u.joint)].compliance;
+          const Vector6 softness = rod.softness(at(at_u.joint), inverse_dt2);
           if (next->first)
             add_square<true>(side_u, segment, softness.data(), block);
           else

@@ -73,6 +73,12 @@ struct Joint {
   bool is_kinked() const;                                            ///< not p_a = p_b = 1
 };
 
+/// Internal damping of a joint in a step (solver/step/internal_damping.hpp): its constraint is C - past + yielding alpha~
+/// lambda = 0.
+struct JointDamping {
+  Vector6 yielding = Vector6::Ones(), past = Vector6::Zero();
+};
+
 /// Sets the rest orientation and the frame half-way.
 void set_rest(Joint& joint, const Quaternion& rest);
 
@@ -101,6 +107,19 @@ class Rod {
   std::vector<Vector6> contact_impulse;
   std::vector<Vector3> load_torque_nm;
 
+  std::vector<JointDamping> damping;  ///< of joints, in this step; empty without internal damping
+
+  /// alpha~ of a joint in this step.
+  Vector6 softness(std::size_t joint, double inverse_dt2) const {
+    const Vector6 undamped = inverse_dt2 * joints[joint].compliance;
+    return damping.empty() ? undamped : Vector6(undamped.cwiseProduct(damping[joint].yielding));
+  }
+  /// C + alpha~ lambda of a joint, which Newton drives to zero.
+  Vector6 residual(std::size_t joint, const Vector6& constraint, double inverse_dt2) const {
+    const Vector6 yielded =
+        softness(joint, inverse_dt2).cwiseProduct(lambda.segment<6>(static_cast<Eigen::Index>(6 * joint)));
+    return damping.empty() ? Vector6(constraint + yielded) : Vector6(constraint - damping[joint].past + yielded);
+  }
   bool has_outer_impulses() const { return !contact_impulse.empty() || !load_torque_nm.empty(); }
   Vector6 outer_impulse(std::size_t segment) const;  ///< of contacts and of those torques
 };

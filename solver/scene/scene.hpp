@@ -81,7 +81,8 @@ struct Scene {
   std::vector<Rod> rods;
   Vector3 gravity_m_s2{0, -9.81, 0};  ///< without the changes
   std::vector<GravityChange> gravity_changes;
-  double damping_per_s = 0;  ///< viscous drag rate c: dv/dt = -c v, dw/dt = -c w, taken implicitly
+  double damping_per_s = 0;       ///< viscous drag rate c: dv/dt = -c v, dw/dt = -c w, taken implicitly
+  double internal_damping_s = 0;  ///< tau of solver/step/internal_damping.hpp
   std::vector<MovingClamp> clamps;
   std::vector<PointLoad> loads;
   std::optional<ContactSettings> contact;  ///< empty: no contacts

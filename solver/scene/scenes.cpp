@@ -39,6 +39,7 @@ Scene build_scene(const SceneSpec& spec) {
   Scene scene;
   scene.gravity_m_s2 = p.gravity_m_s2;
   scene.damping_per_s = p.damping_per_s;
+  scene.internal_damping_s = p.internal_damping_s;
   if (p.wind) scene.wind.emplace(*p.wind);
   scene.contact = p.contact;
   scene.obstacles = p.obstacles;

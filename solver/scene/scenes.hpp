@@ -69,7 +69,7 @@ struct RodParameters {
   double youngs_modulus_pa = 1e5;
   double torsion_modulus_pa = 1e6;
   Vector3 gravity_m_s2{0, -9.81, 0};
-  double damping_per_s = 0;
+  double damping_per_s = 0, internal_damping_s = 0;
   Stretch stretch = Stretch::inextensible;
   std::optional<double> stretch_compliance_per_j;  ///< of the three stretch-shear rows [1/J], instead of `stretch`
   std::optional<WindParameters> wind;

@@ -130,6 +130,27 @@ void FreeFlight::update_velocities(Rod& rod) const {
   });
 }
 
+RodMotion FreeFlight::before(const Rod& rod) const {
+  RodMotion out;
+  if (known_ < 1) return out;
+  out = {rod.position, rod.velocity, rod.angular_velocity, rod.orientation};
+  visit_groups(groups_, rod, [&](const Group& group, std::size_t s, int count) {
+    store(group.now.position, &out.position[s], count);
+    store(group.now.velocity, &out.velocity[s], count);
+    store(group.now.spin, &out.angular_velocity[s], count);
+    store(group.now.orientation, &out.orientation[s], count);
+  });
+  return out;
+}
+
+void FreeFlight::continue_from(const Rod& rod, const RodMotion& before) {
+  known_ = 1;
+  visit_groups(groups_, rod, [&](Group& group, std::size_t s, int count) {
+    group.now = {load(&before.position[s], count), load(&before.orientation[s], count),
+                 load(&before.velocity[s], count), load(&before.angular_velocity[s], count)};
+  });
+}
+
 void FreeFlight::put_past(const Rod& rod, Vector3* position, Quaternion* orientation) const {
   visit_groups(groups_, rod, [&](const Group& group, std::size_t s, int count) {
     store(group.past.position, position + s, count);

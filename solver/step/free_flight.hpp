@@ -37,6 +37,12 @@ struct SegmentLoads {
   std::vector<Vector3> force_n, torque_nm;
 };
 
+/// The motion of a rod's segments at one time.
+struct RodMotion {
+  std::vector<Vector3> position, velocity, angular_velocity;
+  std::vector<Quaternion> orientation;
+};
+
 class FreeFlight {
  public:
   FreeFlight(const Rod& rod, Integrator integrator, double dt);
@@ -58,6 +64,11 @@ class FreeFlight {
   void extrapolate(Rod& rod) const;
 
   void update_velocities(Rod& rod) const;
+
+  /// The motion at the start of the last step; empty before one, and after an impact, when the next step does not use it.
+  RodMotion before(const Rod& rod) const;
+  /// Continues a rod that had this motion a step ago.
+  void continue_from(const Rod& rod, const RodMotion& before);
 
   /// x^ and q^ of all segments, from which this step's velocities are measured.
   void put_past(const Rod& rod, Vector3* position, Quaternion* orientation) const;

@@ -89,8 +89,8 @@ GaussSeidelProjection::Iteration XpbdProjection::iterate(Rod& rod, const std::ve
     Vector6 residual;
     linearize(rod, joint, jacobian, residual.data());
     auto lambda = rod.lambda.segment<6>(6 * joint_index);
-    const Vector6 softness = inverse_dt2 * joint.compliance;
-    residual += softness.cwiseProduct(lambda);
+    const Vector6 softness = rod.softness(at(joint_index), inverse_dt2);
+    residual = rod.residual(at(joint_index), residual, inverse_dt2);
     iteration.meet(residual);
 
     Block6 rows;

@@ -82,8 +82,7 @@ double newton_residual(const Rod& rod, const Linearization& at, double constrain
   double worst = 0;
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
-    const Vector6 yielding = rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
-    const Vector6 residual = at.constraint.segment<6>(row) + yielding / (constraint_dt * constraint_dt);
+    const Vector6 residual = rod.residual(k, at.constraint.segment<6>(row), 1 / (constraint_dt * constraint_dt));
     if (!residual.allFinite()) return std::numeric_limits<double>::quiet_NaN();
     worst = std::max(worst, residual.lpNorm<Eigen::Infinity>());
   }

@@ -29,7 +29,8 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
     if (!scene.rods[at(clamp.rod)].segments[at(clamp.segment)].is_static)
       throw SceneError("a moving clamp needs a static segment; segment " + std::to_string(clamp.segment) + " is free");
   }
-  for (const Rod& rod : scene.rods) {
+  for (Rod& rod : scene.rods) {
+    if (scene.internal_damping_s > 0) dampings_.emplace_back(rod, scene.internal_damping_s);
     flights_.emplace_back(rod, settings.integrator, settings.dt);
     const std::vector<Vector3> none(rod.segments.size(), Vector3::Zero());
     loads_.push_back({none, none});
@@ -73,7 +74,7 @@ StepReport TimeStepper::step(Projection& projection) {
   if (newton == Newton::open) newton = iterate(projection, most, report);
   if (report.balanced)
     for (Rod& rod : scene_.rods) unstiffen(rod);
-  report.balanced &= newton == Newton::converged;
+  report.balanced &= newton == Newton::converged || (newton == Newton::open && is_near_balance(1e-3));
   pause_balance(tries, report.balanced);
   if (newton == Newton::failed) return report;
 
@@ -100,6 +101,15 @@ void TimeStepper::pause_balance(bool tried, bool balanced) {
   paused_ = pause_;
 }
 
+void TimeStepper::continue_from(int rod, const RodMotion& before) {
+  flights_[at(rod)].continue_from(scene_.rods[at(rod)], before);
+  if (dampings_.empty()) return;
+  Rod earlier = scene_.rods[at(rod)];
+  earlier.position = before.position;
+  earlier.orientation = before.orientation;
+  dampings_[at(rod)].remember(earlier);
+}
+
 Reactions TimeStepper::reactions() const {
   Reactions out;
   for (const Rod& rod : scene_.rods) add_clamp_actions(rod, out.clamps);
@@ -108,9 +118,13 @@ Reactions TimeStepper::reactions() const {
 }
 
 bool TimeStepper::is_lost(Newton balanced) const {
-  constexpr double lost_joints = 1e-6, lost_momentum = 0.1;
-  if (balanced == Newton::open) return !(newton_residual_ < lost_joints && momentum_residual_ < lost_momentum);
-  return balanced == Newton::failed;
+  constexpr double lost = 0.1;
+  return balanced == Newton::failed || (balanced == Newton::open && !is_near_balance(lost));
+}
+
+bool TimeStepper::is_near_balance(double momentum) const {
+  constexpr double joints = 1e-6;
+  return newton_residual_ < joints && momentum_residual_ < momentum;
 }
 
 /// Starts the step again without the balance of momentum.
@@ -157,12 +171,15 @@ double constraint_dt(double damping_per_s, double h) {
 
 void TimeStepper::start() {
   if (contact_) contact_->start_step(end_of_step());
+  for (std::size_t r = 0; r < dampings_.size(); ++r) dampings_[r].remember(scene_.rods[r]);
   for (std::size_t r = 0; r < scene_.rods.size(); ++r) flights_[r].start(scene_.rods[r]);
   if (contact_ && settings_.integrator == Integrator::bdf2) {
     const std::vector<char>& hit = contact_->impacts();
     for (std::size_t r = 0; r < scene_.rods.size(); ++r)
       if (hit[r]) flights_[r].start_anew(scene_.rods[r]);
   }
+  for (std::size_t r = 0; r < dampings_.size(); ++r)
+    dampings_[r].start(scene_.rods[r], flights_[r].h(), flights_[r].uses_two_steps());
   for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
     scene_.rods[r].constraint_dt = constraint_dt(scene_, flights_[r].h());
     if (!contact_) continue;

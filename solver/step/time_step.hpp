@@ -11,6 +11,7 @@
 // iterations do not come near that (a slender rod that hits the floor end-on can fold in many ways), the step is undone
 // and repeated as above. After a step that did not reach balance, 1, 2, 4, ... up to 16 steps do not try, so that scenes
 // where Newton cannot converge in time cost little more than without balance.
+// With internal damping, C has a part of its rate (internal_damping.hpp).
 // Loads: gravity and point loads as of the end of the step, and the wind's drag (wind.hpp), at the start of a step of
 // Euler, at the expected end of one of BDF2; in balance, torques of point loads act in g. A rod that hits something takes that step and the next two as
 // Euler's: with the velocity before an impact, BDF2 would rebound. Nothing allocates after construction, except for
@@ -23,6 +24,7 @@
 #include "solver/contact/contact_projection.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/step/free_flight.hpp"
+#include "solver/step/internal_damping.hpp"
 #include "solver/step/projection.hpp"
 
 namespace rodsweep {
@@ -37,7 +39,7 @@ struct StepSettings {
 struct StepReport {
   SolveOutcome outcome = SolveOutcome::converged;  ///< the last failure of a solve, else converged
   int newton_iterations = 0;                       ///< solves used: maximum over rods and contacts
-  bool balanced = false;                           ///< momentum is in balance at the end
+  bool balanced = false;                           ///< momentum is in balance at the end, to 1e-3 at least
   int contacts = 0;                                ///< number of contacts
   double penetration = 0, contact_residual = 0;    ///< at the end of the step, see ContactState
 };
@@ -64,6 +66,11 @@ class TimeStepper {
 
   int steps_taken() const { return steps_; }
 
+  /// See FreeFlight. To continue a simulation: the scene has its time, poses, velocities and multipliers, and each rod
+  /// continues from its motion a step before. In contact, impulses and impacts of earlier steps are not known.
+  RodMotion before(int rod) const { return flights_[at(rod)].before(scene_.rods[at(rod)]); }
+  void continue_from(int rod, const RodMotion& before);
+
  private:
   enum class Newton { converged, open, failed };
 
@@ -74,16 +81,18 @@ class TimeStepper {
   Newton iterate(Projection& projection, int until, StepReport& report);
   double end_of_step() const { return start_time_s_ + (steps_ + 1) * settings_.dt; }
   void pause_balance(bool tried, bool balanced);
-  bool is_lost(Newton balanced) const;  ///< whether a balanced attempt that ended so must be undone
+  bool is_near_balance(double momentum) const;  ///< `momentum`: limit of the last iteration's residual
+  bool is_lost(Newton balanced) const;          ///< whether a balanced attempt that ended so must be undone
 
   Scene& scene_;
   StepSettings settings_;
   double start_time_s_;
   int steps_ = 0;
-  int pause_ = 0, paused_ = 0;  ///< steps that do not try to balance momentum: in a row, and still to come
-  std::vector<FreeFlight> flights_;                     ///< of every rod
-  std::vector<SegmentLoads> loads_;                     ///< point loads and wind, in free flight
-  std::vector<Vector3> torques_nm_;                     ///< of point loads, about the segments' centres
+  int pause_ = 0, paused_ = 0;             ///< steps that do not try to balance momentum: in a row, and still to come
+  std::vector<FreeFlight> flights_;        ///< of every rod
+  std::vector<InternalDamping> dampings_;  ///< likewise; none without internal damping
+  std::vector<SegmentLoads> loads_;        ///< point loads and wind, in free flight
+  std::vector<Vector3> torques_nm_;        ///< of point loads, about the segments' centres
   double newton_residual_ = 0, momentum_residual_ = 0;  ///< maxima of the last iteration
   std::unique_ptr<ContactProjection> contact_;          ///< null in a scene without contacts
 };

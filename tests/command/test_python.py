@@ -143,7 +143,7 @@ class Python(WithPython):
     def test_a_guess_with_two_answers_for_a_system_is_named_in_a_warning(self):
         self.write("mine.py", guess("def propose(self, system): return np.random.rand(len(system.b))"))
         done = self.ran("run", self.job({"python": {"file": "mine.py"}}, "previous"), "-o", "s.h5")
-        self.assertIn('warning: task 0: the guess "python mine" gave two different answers for the same system', done.stderr)
+        self.assertIn('; the guess "python mine" gave two different answers for the same system', done.stderr)
         with h5py.File("s.h5") as file:
             self.assertEqual(file["/tasks/outcome"][0].rstrip(b"\0"), b"ok")
             self.assertIn(b'the guess "python mine" gave two', file["/tasks/message"][0])

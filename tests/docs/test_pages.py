@@ -112,7 +112,7 @@ class Keys(unittest.TestCase):
         for name in ("time", "solve", *(f"scene.obstacles.item.{kind}" for kind in ("half_space", "ball", "capsule"))):
             self.assertEqual(fixed(schema.named(name)), set(), name)
         top = schema.all["properties"]
-        self.assertEqual(set(top) - fixed({"properties": top}), {"evaluation", "scene", "time", "solve"})
+        self.assertEqual(set(top) - fixed({"properties": top}), {"evaluation", "scene", "start", "time", "solve"})
         for name in ("record", "network", "training"):
             self.assertEqual(fixed(top[name]), set(top[name]["properties"]), name)
 

@@ -217,7 +217,7 @@ Counts counts_of(const Json& job, bool backwards = false) {
     const TaskRecord record = record_of(plan, index);
     INFO(record.message);
     CHECK(record.outcome == TaskOutcome::ok);
-    CHECK(record.message.empty());
+    CHECK_THAT(record.message, !Catch::Matchers::ContainsSubstring("guess"));
     for (std::size_t g = 0; g < labels.size(); ++g) {
       if (record.tasks.counted.iterations(0, g) < 0) continue;
       std::vector<std::int64_t>& own = counts[labels[g]];

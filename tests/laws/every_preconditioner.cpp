@@ -63,7 +63,7 @@ std::vector<std::string> words(const char* key) {
 }
 
 /// The sample of a preconditioner for a scene.
-Json solve_by(const std::string& preconditioner, const std::string& graph, const Graphs& graphs) {
+Json solve_by(const std::string& preconditioner, const std::string& graph, [[maybe_unused]] const Graphs& graphs) {
   const bool loops = graph == "loop" || graph == "net" || graph == "lattice";
   const std::map<std::string, Json> files{
       {"learned", {{"model", loops ? PRETRAINED "/lattices.h5" : PRETRAINED "/rods.h5"}}},

@@ -207,6 +207,13 @@ Inputs::Inputs() {
     make_data_set(folder_ / name, rodsweep::with("/time/steps", "2", data_job()));
     names_[FileKind::data_set].emplace_back(name);
   }
+  for (const char* name : {"a start.h5", "more/b start.h5"}) {
+    Json job = sweep_of(scene_of("bending_rod"), {{"method", "direct"}}, Json::array());
+    job["scene"]["youngs_modulus_pa"] = {{"grid", {1e6, 2e6, 3e6, 4e6}}};
+    job["record"] = {{"trajectory_every", 1}, {"states", true}};
+    make_data_set(folder_ / name, job);
+    names_[FileKind::results].emplace_back(name);
+  }
   texts(FileKind::any, ".txt", "one", "two");
   texts(FileKind::skeleton, ".swc", "1 1 0 0 0 .1 -1\n2 1 0 1 0 .1 1\n3 1 0 2 0 .1 2\n",
         "1 1 0 0 0 .1 -1\n2 1 0 1 0 .1 1\n3 1 0 2 1 .1 2\n");

@@ -29,10 +29,13 @@ inline std::complex<double> factor_per_step(const std::vector<double>& samples, 
   return std::polar(std::pow(size, power), std::acos(fit[0] / (2 * size)) * power);
 }
 
-/// The factor of a small free oscillation of a scene's rod. Samples are displacements weighted by initial velocities.
-inline std::complex<double> factor_per_step(Scene scene, double dt, int steps, std::size_t stride) {
+/// The factor of a small free oscillation of a scene's rod. Samples are displacements weighted by initial velocities, of
+/// BDF2 after its first steps.
+inline std::complex<double> factor_per_step(Scene scene, double dt, int steps, std::size_t stride,
+                                            Integrator integrator = Integrator::euler) {
   const std::vector<Vector3> weight = scene.rods.front().velocity, rest = scene.rods.front().position;
-  Simulation simulation(std::move(scene), dt);
+  Simulation simulation(std::move(scene), StepSettings{dt, 12, 1e-14, integrator});
+  if (integrator == Integrator::bdf2) simulation.run(20);  // the first is Euler's; the second root decays
   std::vector<double> samples;
   for (int i = 0; i < steps; ++i) {
     simulation.step();

@@ -22,7 +22,7 @@ small: /scene/stretch_compliance_per_j = "rigid" | scene.stretch_compliance_per_
 small: /name = "a/b" | name: "a/b" | must be a file name of 1 to 100 letters, digits, "_", "-" or "."
 small: /solve = {"preconditioner": "jacoby"} | solve.preconditioner: "jacoby"
   | one of "none", "jacobi", "point_block_jacobi", "icc", "block_icc", "cholesky", "lagged_cholesky", "condensed"
-small: /record = {"xyzzy": 1} | record.xyzzy: unknown key; allowed here: "solves", "norms", "trajectory_every", "forces"
+small: /record = {"xyzzy": 1} | record.xyzzy: unknown key; allowed here: "solves", "norms", "trajectory_every", "states", "forces"
 small: /scene/windings = 1 | scene.windings: this key belongs to scene.type "helix", not to "bending_rod"
 small: /scene/length_m | scene.length_m: missing: length of the rod | [m] | above 0 and at most 1000000
 small: /time/duration_s = 1 | time: "steps", "duration_s" exclude each other
@@ -105,11 +105,11 @@ small: /solve/forcing = "eisenstat_walker" | solve.forcing: "eisenstat_walker" |
 small: /solve/forcing = {"grid": ["fixed", "eisenstat_walker"]} | solve.forcing: "eisenstat_walker" | evaluation "paired"
 small: /guesses; /solve = {"method": "pbd"} | solve.method: "pbd" | evaluation "paired" | must be used with "closed_loop"
 small: /guesses; /solve = {"method": "xpbd"} | solve.method: "xpbd" | evaluation "paired" | must be used with "closed_loop"
-  | must be used with "direct" or "cg"
+closed: /solve = {"method": "pbd"}; /scene/internal_damping_s = 0.1 | scene.internal_damping_s: 0.1
+  | solve.method "pbd" | must be 0
+data: /scene/internal_damping_s = 0.1 | scene.internal_damping_s: 0.1 | kind "dataset" | must be 0
 closed: /solve = {"method": {"grid": ["direct", "end_to_end"]}} | solve.model: missing
 network: /guesses = ["zero"] | guesses: only solve.method "cg" uses initial guesses
-network: /solve/method = "state_network"; /time/integrator = "bdf2" | time.integrator: "bdf2" is not allowed
-  | must be "euler"
 network: /evaluation = "paired" | solve.method: "end_to_end" is not allowed | must be used with "closed_loop"
 small: /solve = {"iterations": 5} | solve.iterations: this key belongs to solve.method "xpbd" or "pbd", not to "cg"
   | use max_iterations for cg, time.newton_iterations for Newton

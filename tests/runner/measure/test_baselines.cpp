@@ -97,7 +97,7 @@ TEST_CASE("a simulator of states moves rods without any solve; its steps are dat
   write_model(folder / "still.h5", 0, true);
   Json job = instead_of_the_solve("still.h5");
   job["solve"]["method"] = "state_network";
-  job["time"].update({{"steps", 5}, {"integrator", "euler"}});
+  job["time"]["steps"] = 5;
   const TaskRecord record = evaluated(folder, job).front();
   CHECK(record.outcome == TaskOutcome::ok);
   CHECK(record.steps.kinetic_energy_j.back() < 1e-20);  // an untrained network has no gravity
@@ -120,7 +120,6 @@ TEST_CASE("models are refused where they are for something else") {
   CHECK(refusal_of(instead_of_the_solve("systems.h5")).empty());
   Json simulator = instead_of_the_solve("systems.h5");
   simulator["solve"]["method"] = "state_network";
-  simulator["time"]["integrator"] = "euler";
   CHECK_THAT(refusal_of(simulator), Catch::Matchers::ContainsSubstring(
                                         "solve.model: systems.h5 is not allowed: its encoding is not \"state\""));
   CHECK_THAT(refusal_of(with("/guesses", R"(["zero", {"copingnet": {"model": "states.h5"}}])")),

@@ -326,8 +326,7 @@ TEST_CASE("with too few iterations to share, a step that is not in balance yet i
     Simulation simulation(build_scene(test::bending_rod(20)), {0.02, iterations, 1e-9}, 1e-12);
     double gap = 0;
     for (int step = 0; step < 40; ++step) {
-      const StepReport report = simulation.step();
-      CHECK(report.newton_iterations == iterations);
+      simulation.step();
       gap = std::max(gap, joint_gap(simulation.rod()));
     }
     CHECK(gap < (iterations == 1 ? 1e-1 : 1e-3));

@@ -25,13 +25,13 @@ void set_transverse_velocity(Rod& rod, const VectorX& at_vertices, const Vector3
 
 /// The factor per step of a mode over `cycles` periods of about `frequency`, from a small start in its shape.
 std::complex<double> mode_factor(Scene scene, const VectorX& shape, const Vector3& direction, double frequency,
-                                 double dt, double cycles) {
+                                 double dt, double cycles, Integrator integrator = Integrator::euler) {
   const double amplitude = 1e-5;  // of the displacement [m]; small enough for linearity to 1e-9
   Rod& start = scene.rods.front();
   set_transverse_velocity(start, amplitude * frequency / shape.lpNorm<Eigen::Infinity>() * shape, direction);
   const double period = 2 * pi / (frequency * dt);  // in steps
   return factor_per_step(std::move(scene), dt, static_cast<int>(cycles * period),
-                         static_cast<std::size_t>(std::max(1.0, period / 5)));
+                         static_cast<std::size_t>(std::max(1.0, period / 5)), integrator);
 }
 
 /// Clamped-free Euler-Bernoulli mode k at the vertices, and beta L.
@@ -100,6 +100,24 @@ TEST_CASE("The modes of a clamped-free chain have the frequencies and the decay 
   const std::complex<double> z = mode_factor(build_scene(p), modes.shape.col(k), Vector3::UnitZ(), w, dt, 1);
   CHECK(std::arg(z) / dt == Approx(std::atan(w * dt) / dt).epsilon(1e-4));
   CHECK(-std::log(std::abs(z)) == Approx(std::log1p(w * w * dt * dt) / 2).epsilon(1e-4));
+}
+
+// The backward difference of z^k is u z^k with u = (1 - 1 / z) / dt, with BDF2 (3 - 4 / z + 1 / z^2) / (2 dt). So u^2 +
+// tau w^2 u + w^2 = 0 for any step.
+TEST_CASE("Internal damping lets the modes of a chain decay by half of tau times their squared frequency") {
+  const int k = GENERATE(0, 1, 2);
+  const Integrator integrator = GENERATE(Integrator::euler, Integrator::bdf2);
+  const double dt = 5e-4, tau = 5e-4;
+  BendingRod p = weightless_cantilever(50, 1e9, 1e9);
+  p.internal_damping_s = tau;
+  const Modes modes = chain_modes(p);
+  const double w = modes.frequency[k];
+  const std::complex<double> z =
+      mode_factor(build_scene(p), modes.shape.col(k), Vector3::UnitZ(), w, dt, 1, integrator);
+  const std::complex<double> u =
+      integrator == Integrator::euler ? (1.0 - 1.0 / z) / dt : (3.0 - 4.0 / z + 1.0 / (z * z)) / (2 * dt);
+  CHECK(-u.real() == Approx(w * w * tau / 2).epsilon(2e-3));
+  CHECK(std::abs(u) == Approx(w).epsilon(1e-4));
 }
 
 TEST_CASE("A finely divided beam has the first frequency that rotary inertia gives it", "[.long]") {
