@@ -49,8 +49,15 @@ std::size_t frame_of(const TaskRecord& record, const StartSpec& spec) {
   return nearest;
 }
 
+/// Joints of a frame; the axis of frames may be longer than those of this task.
+std::size_t joints_of(const TaskRecord& record) {
+  const auto& states = record.trajectories.states;
+  const std::size_t frames = states.velocity_m_s.size() / 3 / record.trajectories.segments.length_m.size();
+  return states.lambda.size() / 6 / frames;
+}
+
 /// The frame must be of these segments and joints; which joint is where follows from the scene.
-void compare(const Scene& scene, const TaskRecord& record, std::size_t frames, const StartSpec& spec) {
+void compare(const Scene& scene, const TaskRecord& record, const StartSpec& spec) {
   const auto& segments = record.trajectories.segments;
   std::size_t row = 0, joints = 0;
   for (std::size_t r = 0; r < scene.rods.size(); ++r) {
@@ -65,7 +72,7 @@ void compare(const Scene& scene, const TaskRecord& record, std::size_t frames, c
       ++row;
     }
   }
-  const std::size_t had = record.trajectories.states.lambda.size() / 6 / frames;
+  const std::size_t had = joints_of(record);
   if (row != segments.length_m.size() || joints != had)
     throw FileError("task {} of {} has {} segments and {} joints; this scene has {} and {}", spec.task,
                     spec.file.native(), segments.length_m.size(), had, row, joints);
@@ -79,8 +86,8 @@ StartState::StartState(std::shared_ptr<const TaskRecord> record, const StartSpec
     : record_(std::move(record)), scene_(scene) {
   const auto& frames = record_->trajectories;
   const std::size_t frame = frame_of(*record_, spec);
-  compare(scene, *record_, frames.first_row.size(), spec);
-  std::size_t joint = frame * (frames.states.lambda.size() / 6 / frames.first_row.size());
+  compare(scene, *record_, spec);
+  std::size_t joint = frame * joints_of(*record_);
   std::size_t row = first_segment_ = frame * frames.segments.length_m.size();
   for (Rod& rod : scene.rods) {
     load(frames.position_m.row(row), rod.position);

@@ -12,11 +12,13 @@ MovingClamp tip_clamp(const TipMotion& motion, const SegmentSpec& last, int segm
   const Vector3 half(0, 0, last.length_m / 2);
   const Quaternion at_first = last.orientation;
   const Schedule progress{{0, motion.duration_s}, {0, 1}, true};
-  return {0, segment, [=, end = Vector3(last.position_m + at_first * half)](double time_s) {
+  return {0, segment,
+          [=, end = Vector3(last.position_m + at_first * half)](double time_s) {
             const double done = progress.at(time_s);
             const Quaternion orientation = (motion.rotation(done) * at_first).normalized();
             return Pose{end + done * motion.displacement_m - orientation * half, orientation};
-          }};
+          },
+          motion.duration_s};
 }
 
 /// Throws SceneError if a rod between two ends cannot follow the motion of its tip (see check_reach() of prescribed.cpp).

@@ -224,13 +224,15 @@ void add(const std::vector<PrescribedMotion>& motions, const SegmentFinder& plac
     own.about = centre_of_turns(own.motions, places.rounding_m());
     own.position = rod.position[s];
     own.orientation = rod.orientation[s];
-    scene.clamps.push_back({place.first, place.second, own});
+    scene.clamps.push_back({place.first, place.second, own, times_of(own.motions).back()});
     paths[place.first].push_back({place.second, own, [own = own](double time_s) { return own.turned_deg(time_s); }});
   }
   for (const auto& [rod, own] : paths) check_reach(scene.rods[at(rod)], own, times_of(motions), stretches);
 }
 
 }  // namespace
+
+double Schedule::until_s() const { return times_s.empty() ? -std::numeric_limits<double>::infinity() : times_s.back(); }
 
 double Schedule::at(double time_s) const {
   if (times_s.empty()) return 1;

@@ -19,6 +19,7 @@ struct Schedule {
 
   double at(double time_s) const;
   double largest() const;  ///< magnitude
+  double until_s() const;  ///< constant from then on
   /// Throws SceneError unless times increase and each has a factor.
   void check() const;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -24,6 +25,7 @@ struct MovingClamp {
   int rod = 0;
   int segment = 0;
   std::function<Pose(double time_s)> pose;
+  double until_s = std::numeric_limits<double>::infinity();  ///< constant from then on
 };
 
 /// A dead load on one segment: force at `arm` (local frame, from the centre) and torque, both fixed in the world, times

@@ -12,17 +12,13 @@ namespace {
 
 /// Whether loads, gravity, clamps and obstacles have come to their last values.
 bool is_settled(const Scene& scene) {
-  constexpr double end_s = 1e9;  // the latest time in a job
-  const double now_s = scene.time_s;
-  const auto holds = [&](const Schedule& schedule) { return schedule.at(now_s) == schedule.at(end_s); };
+  const auto changes = [&](double until_s) { return scene.time_s < until_s; };
   for (const PointLoad& load : scene.loads)
-    if (!holds(load.schedule)) return false;
+    if (changes(load.schedule.until_s())) return false;
   for (const GravityChange& change : scene.gravity_changes)
-    if (!holds(change.schedule)) return false;
-  for (const MovingClamp& clamp : scene.clamps) {
-    const Pose now = clamp.pose(now_s), end = clamp.pose(end_s);
-    if (now.position != end.position || now.orientation.coeffs() != end.orientation.coeffs()) return false;
-  }
+    if (changes(change.schedule.until_s())) return false;
+  for (const MovingClamp& clamp : scene.clamps)
+    if (changes(clamp.until_s)) return false;
   return std::all_of(scene.obstacles.begin(), scene.obstacles.end(), [](const Obstacle& obstacle) {
     return std::visit([](const auto& solid) { return solid.velocity_m_s.isZero(0); }, obstacle);
   });

@@ -47,6 +47,20 @@ TEST_CASE("a task starts from the last frame of a file, or from one at a time, w
     }
 }
 
+TEST_CASE("a task starts from one that has fewer frames than others of its file") {
+  const TemporaryFolder folder;
+  Json job = with_states();
+  job["time"]["steps"] = {{"grid", {4, 40}}};
+  make_data_set(folder / "a.h5", job);
+  const TaskRecord from = record_of(plan_of(job));
+  const TaskRecord record = record_of(plan_in(folder, started({{"file", "a.h5"}})));
+  REQUIRE(record.outcome == TaskOutcome::ok);
+  const auto& lambda = from.trajectories.states.lambda;
+  const std::size_t joints = lambda.size() / 6 / 3;
+  for (std::size_t joint = 0; joint < joints; ++joint)
+    CHECK(record.trajectories.states.lambda(joint, 4) == lambda(2 * joints + joint, 4));
+}
+
 TEST_CASE("a start that does not fit is refused with file, task and what to do") {
   const TemporaryFolder folder;
   Json several = with_states();

@@ -81,6 +81,9 @@ TEST_CASE("nothing is at rest that falls, or that a load or a motion will move")
   CHECK(rest.scene.time_s > 1.1);
   CHECK(rest.steps > 0);
 
+  loaded.prescribed.loads[0].schedule = {{0, 0.5, 1}, {0, 1, 0}, false};  // passes its last value at first
+  CHECK(at_rest(build_scene(loaded), 0.02, 1e-3).scene.time_s >= 1);
+
   BendingRod moved = weightless_cantilever(5, 1e9, 4e8);
   moved.tip_motion = TipMotion{{-0.1, 0, 0}, {0, 0, 0}, 1};
   CHECK(at_rest(build_scene(moved), 0.02, 1e-3).scene.time_s >= 1);
