@@ -182,7 +182,7 @@ class Environment(unittest.TestCase):
 
 
 class Jobs(unittest.TestCase):
-    NO_KEYS = {"span", "points", "radius", "from_stretch"}    # a wrong key, keys of files of curves, a word
+    NO_KEYS = {"points", "radius", "from_stretch"}    # keys of files of curves, a word
 
     def test_keys_in_texts_and_in_the_plugins_header_exist(self):
         names, header = set(), os.path.join("solver", "plugin", "plugin.h")
