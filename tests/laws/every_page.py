@@ -51,7 +51,7 @@ MINUTES = {    # left out unless long
         "build/rodsweep ", "analysis/", "for job in", "printf ")},
 }
 # What readers of a page have: the job of the README, its results, and those of the demo, all with fewer tasks; a curve.
-GIVEN = {"frame.csv": ("docs/jobs.md",), "my.json": ("docs/faults.md", "docs/running.md"),
+GIVEN = {"frame.csv": ("docs/curves.md",), "my.json": ("docs/faults.md", "docs/running.md"),
          "results/stiffness.h5": ("docs/report.md",),
          "results/demo.h5": ("docs/format.md", "docs/python.md", "docs/reading.md", "docs/report.md")}
 
