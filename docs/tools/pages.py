@@ -25,9 +25,8 @@ line. A text in @<<...>> replaces the visible text there, and is not shown:
 {{ score("10 %", "1 %") }} is the table of score.txt at these errors, {{ answer("1 %") }} a short one of factors.
 {{ fastest("direct solve") }} is where a kind is the fastest there, as "helices at 1 % and trees at 1 and 0.1 %", {{
 among("direct solve") }} where it is one of several whose intervals overlap, and {{ chosen("CG, Jacobi", "copingnet")
-}} where its setting has these words; {{ winners() }} is a table of the former two. {{ cheapest("net_gusts", {"8 × 8":
-"Net, scene.rows = 8:"}) }} is one of the fastest combinations, with a row for each of these blocks. {{ origins() }}
-says what made the tables.
+}} where its setting has these words. {{ cheapest("net_gusts", {"8 × 8": "Net, scene.rows = 8:"}) }} is a table of the
+fastest combinations, with a row for each of these blocks.
 
 The numbers in the cells are styles. A cell has one number per column in its address, each with or without its
 interval, [.00, .00]. Text in `backticks` and columns called `-` do not change. In tables, a | in an address is \\|.
@@ -107,10 +106,10 @@ class Tables:
 
     def score(self, *levels):
         """A Markdown table of the times in score.txt at these errors, such as "1 %". Bold: the fastest kinds. In
-        parentheses: the setting's error is above its level on the test draws."""
+        parentheses: the setting's error is above its level on the test draws. An error that no setting reaches has no row."""
         rows = [["scene", "error", *self.KINDS.values()]]
         for (scene, level), answers in self._scores.items():
-            if level in levels:
+            if level in levels and answers:
                 best = _fastest(answers)
                 rows.append([scene, level, *(_time_text(answers.get(kind), kind in best) for kind in self.KINDS)])
         return _markdown(rows)
@@ -145,12 +144,6 @@ class Tables:
         return _places(place for place, answers in self._scores.items()
                        if kind in answers and words in answers[kind].setting)
 
-    def winners(self):
-        """A Markdown table: where each kind is the fastest, or one of several."""
-        return _markdown([["", "the fastest", "one of the fastest"],
-                          *([name, self.fastest(kind) or "nowhere", self.among(kind) or "nowhere"]
-                            for kind, name in self.KINDS.items() if kind != self.ANY)])
-
     @functools.cached_property
     def _scores(self):
         """{(scene, level): {kind: Answer}}, of the kinds with a setting"""
@@ -182,14 +175,6 @@ class Tables:
             times = {kind: find_cell(inside, "*", "the cheapest", kind, "µs") for kind in kinds}
             rows.append([text, f"{int(joints):,}", *(_time(times[kind]) + _ways(settings[kind]) for kind in kinds),
                          *(find_cell(inside, "*", "the cheapest", kind, over) for kind, over in factors)])
-        return _markdown(rows)
-
-    def origins(self):
-        """A Markdown table: the revision, day and processor that made each table."""
-        rows = [["study", "revision", "day", "minutes", "processor", "failed of tasks", "disturbed"]]
-        for row in origins.read(os.path.join(self.folder, "origins.txt")).values():
-            rows.append([row["study"], row["revision"], row["day"], row["minutes"], row["processor"],
-                         f"{row['failed']} of {row['tasks']}", row["disturbed"]])
         return _markdown(rows)
 
     def table(self, text, address):
@@ -334,7 +319,7 @@ def rendered(template, folder=TABLES):
     with open(template, encoding="utf-8") as file:
         return environment.from_string(file.read()).render(
             cell=tables.cell, score=tables.score, answer=tables.answer, fastest=tables.fastest, among=tables.among,
-            chosen=tables.chosen, winners=tables.winners, cheapest=tables.cheapest, origins=tables.origins)
+            chosen=tables.chosen, cheapest=tables.cheapest)
 
 
 def templates(root=ROOT):

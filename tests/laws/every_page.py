@@ -32,10 +32,7 @@ OUTPUT = ("", "cpp", "c")
 LEFT_OUT = {
     "README.md": {"make demo": "builds, minutes", "make test": "builds, minutes"},
     "docs/extending.md": {"gcc ": "needs an installed header: command/plugin compiles and runs it",
-                          '{ "name": "mean"': "a guess that the page adds to the program",
-                          "build/rodsweep run mean.json": "the same", '    "mean": ': "a line of a file of the program",
-                          '{ "name": "arch"': "a scene that the page adds to the program",
-                          "build/rodsweep run arch.json": "the same"},
+                          '    "mean": ': "a line of a file of the program"},
     "docs/installing.md": {words: "installs packages, or needs a network" for words in (
         "make install", "make uninstall", "cmake ", "docker ", "apptainer ", "mpirun ", "srun ", "spack ", "conda ")},
     "docs/jobs.md": {"build/rodsweep run jobs/networks/bending_data.json": "720 MB"},
@@ -54,7 +51,7 @@ MINUTES = {    # left out unless long
         "build/rodsweep ", "analysis/", "for job in", "printf ")},
 }
 # What readers of a page have: the job of the README, its results, and those of the demo, all with fewer tasks; a curve.
-GIVEN = {"frame.csv": ("docs/jobs.md",), "my.json": ("docs/faults.md", "docs/running.md"),
+GIVEN = {"frame.csv": ("docs/curves.md",), "my.json": ("docs/faults.md", "docs/running.md"),
          "results/stiffness.h5": ("docs/report.md",),
          "results/demo.h5": ("docs/format.md", "docs/python.md", "docs/reading.md", "docs/report.md")}
 
