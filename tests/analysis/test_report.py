@@ -155,7 +155,7 @@ class Honesty(Report):
                  "left with quadratic", "zero with quadratic"),
                 ({"plant": none_reached}, ["Not all solves converged. 576 of 576", "No guess reached 1e-2"], "×", "nan"),
                 ({"plant": large},
-                 ["Not all steps converged. 24 of 24 tasks", "task 0 (0.0001 in step 0)", "and 19 more"]),
+                 ["Not all steps converged. 48 of 48 steps, in 24 of 24 tasks", "task 0 (0.0001 in step 0)", "and 19 more"]),
                 ({"plant": useless, "guesses": ("zero", "previous")}, ["no guess saves any", "no guess wins time"]),
                 ({"guesses": ("previous", "quadratic")}, ["no zero guess"]),
                 ({"solves": False}, ["nothing is said about the clock", "Each guess was tried on the same systems and its "
