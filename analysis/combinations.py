@@ -73,7 +73,7 @@ def table(shown, panels, found, tolerances, x):
     lines += list(filter(None, [shown.timing_warning()]))
     for panel, cells in zip(panels, found):
         for cell in cells:
-            title = f"{panel.title()}, {x} = {cell.x}: {cell.joints:.0f} joints, n = {len(cell.draws)}"
+            title = f"{panel.title()}, {x} = {cell.x}: {cell.joints:.0f} joints, {texts.simulations_text(len(cell.draws))}"
             lines += ["", title] + texts.aligned(_combinations(file, cell, tolerances))
             lines += [""] + texts.aligned(_cheapest(cell))
     return lines

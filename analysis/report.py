@@ -21,7 +21,7 @@ EXAMPLES = """examples:
   analysis/report.py results/demo.h5
   analysis/report.py results/*.h5 --skip -o all.html
   analysis/report.py results/demo.h5 --scene helix --x scene.torsion_modulus_pa --tolerance all -o helix.html --force"""
-ESTIMATES = 80_000          # per page, about 15 bytes each
+ESTIMATES = 120_000         # per page, about 15 bytes each
 ANIMATIONS = 2_000_000      # bytes per page
 
 

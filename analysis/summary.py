@@ -14,7 +14,9 @@ Each scene type and each value of a grid outside `scene` has a block; --by KEY s
 import json
 import math
 import os
+import shutil
 import sys
+import textwrap
 
 from rodsweep.reading import blocks, commandline, groups, measures, remarks, texts, timings, unconverged
 from rodsweep.reading.sweepfile import SweepFile
@@ -24,7 +26,8 @@ EXAMPLES = """examples:
   analysis/summary.py results/demo.h5 --by scene.segments --scene helix --newton all
   analysis/summary.py results/demo.h5 --csv > demo.csv"""
 FAILURES_SHOWN = 5
-TITLE_WIDTH = 24
+TITLE_WIDTH = 32
+LINE_WIDTH = 120    # of prose where there is no terminal
 BESIDE = {"products": "products", "all": "all j", "all_products": "both"}
 BESIDE_MEANING = {"products": "products with A, with those of the guess, instead of iterations",
                   "all": "iterations of all Newton iterations", "all_products": "products of all Newton iterations"}
@@ -77,12 +80,18 @@ def heading(file, sims, chosen, census):
     said = remarks.conditions(file, sims.tasks())
     solver = (f"{said['evaluation']} evaluation; preconditioner {said['preconditioner']}; residual test: {said['norm']}"
               if said["evaluation"] else "advanced by the direct solve, no guesses")
-    return lines + [f"{solver}; time step {said['step_s']} s", *_unconverged(file, sims)]
+    return lines + _wrapped(f"{solver}; time step {said['step_s']} s") + _unconverged(file, sims)
 
 
 def _unconverged(file, sims):
     said = (of(file, sims.tasks()) for of in (unconverged.missed_text, unconverged.newton_text))
-    return [f"WARNING: {text}" for text in said if text]
+    return [line for text in said if text for line in _wrapped(f"WARNING: {text}")]
+
+
+def _wrapped(text):
+    """Lines of prose; tables and what docs/tools/pages.py looks for keep their lines."""
+    return textwrap.wrap(text, shutil.get_terminal_size((LINE_WIDTH, 0)).columns, break_long_words=False,
+                         break_on_hyphens=False)
 
 
 def ratio_lines(file, found, guesses, tolerances, newton):
@@ -94,8 +103,8 @@ def ratio_lines(file, found, guesses, tolerances, newton):
                  "mean over simulations [95 % interval]"]
     beside = [name for name in BESIDE if any(name in (block.beside or {}) for block in shown)]
     if beside:
-        lines.append("Rows below \"the same, means\": this ratio counted otherwise. " +
-                     "; ".join(f"{BESIDE[name]}: {BESIDE_MEANING[name]}" for name in beside))
+        lines += _wrapped("Rows below \"the same, means\": this ratio counted otherwise. " +
+                          "; ".join(f"{BESIDE[name]}: {BESIDE_MEANING[name]}" for name in beside))
     for block in shown:
         title, first = _titled(block, block.ratio.count[guesses])
         rows = [[first] + [texts.tolerance_label(file.tolerances[t]) for t in tolerances]]
@@ -164,7 +173,7 @@ def direct_lines(file, sims, found):
         return []
     rows = [["Direct solve: median over simulations [95 % interval]", "assembly µs", "solve µs"]]
     for block in shown:
-        rows.append([f"  {block.title}, n = {texts.range_text(block.direct_times['direct_us'].count)}"] +
+        rows.append([f"  {block.title}, {texts.simulations_text(block.direct_times['direct_us'].count)}"] +
                     [texts.interval_text(block.direct_times[name]) for name in ("assemble_us", "direct_us")])
     return ["", *_warning(file, sims), *texts.aligned(rows)]
 
@@ -186,7 +195,7 @@ def step_lines(file, found, guesses):
 
 def _titled(block, counts):
     """A block's title: in the first cell of its table, or on a line before the table if it is long."""
-    title = f"{block.title}, n = {texts.range_text(counts)}"
+    title = f"{block.title}, {texts.simulations_text(counts)}"
     return ([], title) if len(title) <= TITLE_WIDTH else ([title], "")
 
 

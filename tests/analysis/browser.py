@@ -83,6 +83,14 @@ class Browser:
         self.send("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
         self.settle()
 
+    def tap(self, x, y):
+        """Touches and lifts; the browser makes the mouse's events of it, as on a phone."""
+        self.send("Emulation.setTouchEmulationEnabled", enabled=True)
+        self.send("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
+        self.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+        self.send("Emulation.setTouchEmulationEnabled", enabled=False)
+        self.settle()
+
     def click(self, selector):
         left, top, width, height = self.box(selector)
         for kind in ("mousePressed", "mouseReleased"):

@@ -30,7 +30,7 @@ class Combinations(running.Scripts):
         self.assertEqual(said.stderr, "")
         found, lines = {}, []
         for line in said.stdout.splitlines():
-            if " joints, n = 5" in line:
+            if " joints, 5 simulations" in line:
                 lines = found.setdefault(int(line.split(": ")[1].split()[0]), [])
             lines.append(" ".join(line.split()))
         return found

@@ -133,13 +133,13 @@ class Program(unittest.TestCase):
             np.testing.assert_array_equal(ratios[:, 1, :, 1], ratios[:, 1, :, 2])  # the same guess in both columns
             self.assertTrue((ratios[:, 2, :, 1] < ratios[:, 1, :, 1]).all())
         said = self.script("summary.py", path)
-        for words in ("Bending rod, guesses[1] = previous, n = 4",
-                      "Bending rod, guesses[1] = oracle, guesses[1].oracle.error = 0.5, n = 4",
-                      "Bending rod, guesses[1] = oracle, guesses[1].oracle.error = 0.001, n = 4"):
+        for words in ("Bending rod, guesses[1] = previous, 4 simulations",
+                      "Bending rod, guesses[1] = oracle, guesses[1].oracle.error = 0.5, 4 simulations",
+                      "Bending rod, guesses[1] = oracle, guesses[1].oracle.error = 0.001, 4 simulations"):
             self.assertIn(words, said)
         by_error = self.script("summary.py", path, "--by", "guesses[1].oracle.error", "--select", "guesses[1]=oracle")
         self.assertIn("guesses[1].oracle.error = 0.001", by_error)
-        self.assertNotIn("previous, n", by_error)
+        self.assertNotIn("previous, 4", by_error)
 
     def test_text_settings_are_swept_and_told_apart(self):
         solve = {"preconditioner": {"grid": ["none", "icc"]}, "norm": {"zip": ["natural", "true_residual"]}}

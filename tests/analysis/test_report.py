@@ -78,13 +78,38 @@ class Numbers(Report):
         self.assertEqual(list(rows), ["oracle(0.1)", "quadratic", "previous", "zero", "direct"])    # by iterations
         for guess in ("previous", "quadratic", "oracle(0.1)"):
             self.assertEqual(rows[guess][1], written("cg_ratio", guess, 0.01))
-            self.assertEqual(rows[guess][7], written("speedup_guess_cg", guess))
-            self.assertEqual(rows[guess][8], written("speedup_step", guess))
-        self.assertEqual(rows["direct"][7], written("speedup_guess_cg", "direct"))
+            self.assertEqual(rows[guess][4], written("speedup_guess_cg", guess))
+            self.assertEqual(rows[guess][6], written("speedup_step", guess))
+        self.assertEqual(rows["direct"][4], written("speedup_guess_cg", "direct"))
         said = parsed.text()
         self.assertIn(f"left with quadratic {written('cg_ratio', 'quadratic', 0.01)[5:]}", said)    # never an oracle
         self.assertIn("the fewest of 2 guesses", said)
         self.assertIn(f"CG with the fastest guess has {written('speedup_over_direct_guess_cg', 'quadratic')} times", said)
+
+    def test_bars_are_the_inverse_of_the_speedups_beside_them(self):
+        text, _ = self.report(samples=7, scenes=("helix",))
+        bars = re.findall(r'<svg class="bar".*?</svg>', text)
+        long = [sum(map(float, re.findall(r' width="([\d.]+)" y', bar))) / 120 for bar in bars]    # of zero: 120 pixels
+        np.testing.assert_allclose(long, [1 / float(row[4].split()[0]) for row in Tables(text).tables[0][1:]], atol=0.01)
+        self.assertIn("CG from zero takes 20.0 µs a solve (median)", Tables(text).text())
+
+    def test_products_stand_beside_iterations(self):
+        self.write(scenes=("helix",), samples=7)
+
+        def spend(h5):
+            for which in ("", "_all"):
+                spent = h5[f"tasks/iterations_sum{which}"][:]
+                spent[:, 2] += spent[:, 0]      # products of quadratic itself: as many as CG from zero takes
+                h5[f"tasks/matvecs_sum{which}"] = spent
+
+        self.changed(spend)
+        text, (data, ) = self.made()
+        rows = {row[0]: row for row in Tables(text).tables[0]}
+        self.assertEqual([word.split()[0] for word in rows["Guess"][3:6]], ["Products", "CG", "Products"])
+        self.assertEqual(rows["quadratic"][3:6], ["1.25", "0.68", "1.68"])    # (1 + 2 * .9) / 3, plus 1
+        self.assertIn("those of the guess included, 1.25 are left; the fewest, 0.50, with previous.", Tables(text).text())
+        measures = [measure["name"] for measure in data["families"][0]["measures"]]
+        self.assertEqual(measures[:4], ["ratio", "iterations", "products_ratio", "products"])
 
     def test_charts_hold_the_planted_values_for_both_choices_of_newton_iterations(self):
         _, (data, ) = self.report(samples=7)
@@ -154,8 +179,11 @@ class Honesty(Report):
                   "left with previous", "the fewest of 1 guess.", "speed of CG from zero with previous"],
                  "left with quadratic", "zero with quadratic"),
                 ({"plant": none_reached}, ["Not all solves converged. 576 of 576", "No guess reached 1e-2"], "×", "nan"),
+                ({"plant": synthetic.Plant(residual=1e-8)},
+                 ["48 of 48 steps, in 24 of 24 tasks, end with a Newton residual over newton_tolerance: task 0 (1e-08 in "
+                  "step 0)", "More newton_iterations"], "Not all steps converged"),
                 ({"plant": large},
-                 ["Not all steps converged. 24 of 24 tasks", "task 0 (0.0001 in step 0)", "and 19 more"]),
+                 ["Not all steps converged. 48 of 48 steps, in 24 of 24 tasks", "task 0 (0.0001 in step 0)", "and 19 more"]),
                 ({"plant": useless, "guesses": ("zero", "previous")}, ["no guess saves any", "no guess wins time"]),
                 ({"guesses": ("previous", "quadratic")}, ["no zero guess"]),
                 ({"solves": False}, ["nothing is said about the clock", "Each guess was tried on the same systems and its "
@@ -174,6 +202,24 @@ class Honesty(Report):
             text, (data, ) = self.report(samples=6)
         self.assertEqual([axis["key"] for axis in data["families"][0]["axes"]], ["scene.segments"])
         self.assertIn(": scene.youngs_modulus_pa, scene.type, scene.length_m", Tables(text).text())
+
+
+class Words(Report):
+    def test_guesses_and_rows_of_steps_are_explained(self):
+        said = Tables(self.report()[0]).text()
+        for words in ("previous The solution of the same Newton iteration", "direct A block factorisation of the matrix",
+                      "Newton residual What remains of the joints' equations", "Length drift Change of the total length"):
+            self.assertIn(words, said)
+        self.assertIn("What the methods are direct", Tables(self.report(method="direct", solves=False)[0]).text())
+
+    def test_steps_in_balance_that_lack_forces_are_named(self):
+        self.write()
+        rows = self.opened().steps.sum()
+        self.changed(("steps/momentum_residual", None, np.where(np.arange(rows) == 3, 0.2, 1e-5)),
+                     ("tasks/parameters/time.balance", None, np.ones(24, dtype=int)),
+                     ("tasks/parameters/time.momentum_tolerance", None, np.full(24, 1e-4)))
+        self.assertIn("1 of 48 steps, in 1 of 24 tasks, end with a momentum residual over momentum_tolerance: task 1 (0.2 in "
+                      "step 1)", Tables(self.made()[0]).text())
 
 
 class Page(Report):

@@ -38,7 +38,7 @@ class Page(unittest.TestCase):
 
     def texts(self, selector):
         return self.js(f"[...document.querySelectorAll({selector!r})]"
-                       ".map(one => one.innerText.trim().replace(/\\s+/g, ' '))")
+                       ".map(one => (one.innerText ?? one.textContent).trim().replace(/\\s+/g, ' '))")
 
     def choose(self, label, value):
         """Selects a value in the list with this label, as a reader does."""
@@ -49,6 +49,10 @@ class Page(unittest.TestCase):
           select.dispatchEvent(new Event('change', {{bubbles: true}}));
         }})()""")
         self.browser.settle()
+
+    def labels(self):
+        """The labels of the y axes."""
+        return self.texts('.chart [aria-label="y-axis label"] text')
 
     def value_at(self, line, point, chart=0):
         """The value of a chart at a point: the height of the dot on the scale of the axis labels."""
@@ -134,7 +138,8 @@ class Charts(Page):
         self.choose("To the tolerance", "1e-1")
         self.assertAlmostEqual(self.value_at(0, 1), 20 * 20 * 1.1, delta=4)
         self.choose("Scene", "helix")
-        self.assertEqual(self.texts(".chart figcaption"), ["Helix CG iterations of a solve"])
+        self.assertEqual(self.texts(".chart figcaption"), ["Helix"])
+        self.assertEqual(self.labels(), ["CG iterations of a solve"])
         self.choose("Over", "Young's modulus (Pa)")
         self.assertEqual(len(self.texts(CHART)), 6)     # two scenes with three numbers of segments each
         self.assertIn("number of segments N", self.texts(".explorer .filters label"))
@@ -147,6 +152,9 @@ class Charts(Page):
         self.assertIn("4.00×", rows["quadratic"])
         self.assertEqual([float(x) for x in re.findall(r"(?<![\[ \d.]{2})\b([\d.]+)× \[", rows["direct"])], [1.25, 2.5, 5])
         self.assertIn("median over simulations", self.texts(".explorer .conditions")[0])
+        self.assertEqual(self.labels(), 2 * ["speedup of CG alone (×)"])
+        self.choose("Show", "time of the guess")
+        self.assertEqual(self.labels(), 2 * ["time of the guess (µs)"])
 
     def test_guesses_are_switched_off_and_on(self):
         def lines():
@@ -175,6 +183,23 @@ class Charts(Page):
             self.assertGreater(self.js(swatch), 20)
             self.browser.move(2, 2)
             self.assertEqual(self.texts(".readout:not([hidden])"), [])
+
+    def test_a_tap_shows_values_that_stay_inside_a_small_screen(self):
+        for screen in (360, 660):
+            self.browser.open(self.page, width=screen, height=740, phone=True)
+            for share, segments in ((0.15, 10), (0.5, 20), (0.95, 40)):
+                with self.subTest(screen=screen, segments=segments):
+                    left, top, width, height = self.browser.box(CHART)
+                    self.browser.tap(left + share * width, top + height / 2)
+                    self.assertIn(f"number of segments N: {segments}", self.texts(".readout:not([hidden])")[0])
+                    left, right = self.js("(() => { const b = document.querySelector('.readout:not([hidden])')"
+                                          ".getBoundingClientRect(); return [b.left, b.right]; })()")
+                    self.assertGreaterEqual(left, 0)
+                    self.assertLessEqual(right, screen)
+                    self.assertLessEqual(self.js("document.scrollingElement.scrollWidth"), screen)
+        left, top, *_ = self.browser.box(".explore h3")
+        self.browser.tap(left + 5, top + 5)
+        self.assertEqual(self.texts(".readout:not([hidden])"), [])
 
     def test_tables_sort_by_any_column_up_and_down(self):
         first = ".answer table tbody tr th"

@@ -52,11 +52,15 @@ class Summary(Scripts):
     def summary(self, *arguments):
         return self.run_script("summary.py", "sweep.h5", *arguments).stdout
 
+    def prose(self):
+        """The summary without the ends of lines."""
+        return " ".join(self.summary().split())
+
     def test_the_table_has_the_planted_numbers(self):
         self.write(scenes=("helix",), failed={3: "diverged"}, pending=(4,))
         said = self.summary()
         for words in ("10 of 12 tasks ok, failed: 1 diverged, 1 pending", "task 3: diverged: planted", "paired",
-                      "jacobi", "‖b − Ax‖₂", "Helix, n = 10", "(j = 0)", "tolerance 1e-2"):
+                      "jacobi", "‖b − Ax‖₂", "Helix, 10 simulations", "(j = 0)", "tolerance 1e-2"):
             self.assertIn(words, said)
         rows = {line.split()[0]: line.split() for line in said.splitlines() if line.startswith("  previous")}
         self.assertIn("2.00", rows["previous"])
@@ -75,7 +79,9 @@ class Summary(Scripts):
                 h5[f"tasks/matvecs_sum{which}"] = spent
 
         self.changed(spend)
-        lines = self.summary().splitlines()
+        said = self.summary()
+        self.assertLessEqual(max(len(line) for part in said.split("\n\n")[:2] for line in part.splitlines()), 120)
+        lines = said.splitlines()
         begin = next(k for k, line in enumerate(lines) if line.startswith("  the same"))
         self.assertEqual(lines[begin].split()[3:9], ["1e-1", "products", "1e-1", "all", "j", "1e-1"])
         self.assertEqual(lines[begin + 2].split()[:4], ["quadratic", "1.25", "0.68", "1.68"])   # (1 + 2 * .9) / 3, plus 1
@@ -84,7 +90,7 @@ class Summary(Scripts):
         plant = synthetic.Plant(reached=lambda guess, tolerance, newton, segments, draw: (
             guess != "quadratic" or draw > 0 or tolerance > 1e-2))
         self.write(scenes=("helix",), plant=plant, samples=6)
-        said = self.summary()
+        said = self.prose()
         for words in ("WARNING: 18 of 432 solves missed the tolerance (quadratic 18). A simulation has no times", "0.25]*",
                       "at 1e-2: quadratic 6"):
             self.assertIn(words, said)
@@ -107,8 +113,8 @@ class Summary(Scripts):
         self.assertNotIn("Newton residual over", self.summary())
         rows = [2 * 7, 2 * 2 + 1, 2 * 1]    # two steps a task
         self.changed(("steps/newton_residual", rows, [0.024, 1.1e-5, 0.9e-5]))
-        self.assertIn("WARNING: 2 of 12 tasks have steps that end with a Newton residual over 10,000 times "
-                      "newton_tolerance: task 7 (0.024 in step 0), task 2 (1.1e-05 in step 1). More", self.summary())
+        self.assertIn("WARNING: 2 of 24 steps, in 2 of 12 tasks, end with a Newton residual over 10,000 times "
+                      "newton_tolerance: task 7 (0.024 in step 0), task 2 (1.1e-05 in step 1). More", self.prose())
 
     def test_csv_and_json_hold_the_same_numbers(self):
         self.write(failed={3: "diverged"}, samples=5)
@@ -131,7 +137,7 @@ class Summary(Scripts):
         self.assertAlmostEqual(found["helix", "length_drift_largest", None, None]["value"], 1e-3)
 
     def test_what_is_said_of_other_sweeps(self):
-        blocks = [f"Helix, scene.segments = {segments}, n = 4" for segments in (10, 20, 40)]
+        blocks = [f"Helix, scene.segments = {segments}, 4 simulations" for segments in (10, 20, 40)]
         for settings, arguments, words, *absent in (
                 ({"scenes": ("helix",)}, ("--by", "scene.segments"), blocks),
                 ({"scenes": ("helix",), "oversubscribed": True}, (), ["WARNING"]),

@@ -59,7 +59,7 @@ class Study:
         """(times of steps, label) if the simulations share one step size, else (steps, label)."""
         parameter = self.file.parameters.get("time.step_s")
         sizes = set(parameter.values[tasks]) if parameter else set()
-        return (steps * sizes.pop(), "simulated time (s)") if len(sizes) == 1 else (steps, "time step")
+        return (steps * sizes.pop(), "simulated time (s)") if len(sizes) == 1 else (steps, "number of the time step")
 
     def solve_tolerance(self):
         return remarks.solve_tolerance(self.file, self.sims.tasks())

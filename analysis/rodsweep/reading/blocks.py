@@ -29,6 +29,7 @@ class Block:
     speedup: dict = None                         # definition: Estimate [guess], over zero-guess CG
     speedup_over_direct: dict = None             # the same over the direct solve
     direct_speedup: dict = None                  # definition: Estimate, of the direct solve over zero-guess CG
+    guess_share: np.ndarray = None               # [guess] median of the guess's part of the time of guess and CG
     times: dict = None                           # assemble_us, guess_us, cg_us, direct_us per solve: Estimate [guess]
     direct_times: dict = None                    # without guesses: assemble_us, direct_us per solve: Estimate
     interruptions: str = ""                      # what was left out of the times
@@ -108,7 +109,8 @@ def _times(file, sims, newton):
         timed["speedup"] = timings.speedups(by_newton, newton)
         timed["direct_speedup"] = timings.direct_speedups(by_newton, newton, file.zero)
     found = intervals.medians({(kind, name): v for kind, of in timed.items() for name, v in of.items()}, sims.sample)
-    return {"interruptions": timings.interruptions(by_newton["all"], sims),
+    share = measures.quotient(part.guess_s, part.guess_s + part.cg_s)
+    return {"interruptions": timings.interruptions(by_newton["all"], sims), "guess_share": measures.median_of_finite(share),
             **{kind: {name: found[kind, name] for name in of} for kind, of in timed.items()}}
 
 

@@ -180,21 +180,44 @@ def solved(file, sims, newton):
 
 @dataclass(frozen=True)
 class OfSteps:
-    """A result of the steps: its headings in tables and on pages, and the title of its chart, if it has one."""
+    """A result of the steps: its headings in tables and on pages, what it is, and the title of its chart, if it has
+    one."""
     column: str
     title: str
+    meaning: str
     chart: str = ""
 
 
 # By column of /steps. Of a simulation: the mean over its steps for newton_iterations, else the largest magnitude.
 OF_STEPS = {
-    "newton_iterations": OfSteps("Newton its/step", "Newton iterations a step", "Newton iterations of a step"),
-    "newton_residual": OfSteps("Newton residual", "Newton residual", "largest Newton residual at the end of a step"),
-    "momentum_residual": OfSteps("momentum residual", "momentum residual"),
-    "length_drift": OfSteps("length drift", "length drift", "largest length drift of a simulation"),
-    "joint_gap": OfSteps("joint gap/length", "joint gap / length", "largest joint gap, over the length"),
-    "penetration": OfSteps("penetration/radius", "penetration / radius", "deepest penetration, over the radius"),
-    "contact_residual": OfSteps("contact residual/radius", "contact residual / radius"),
+    "newton_iterations": OfSteps(
+        "Newton its/step", "Newton iterations a step",
+        "How often a step solves its linear systems, mean over the steps of a simulation.",
+        "Newton iterations of a step"),
+    "newton_residual": OfSteps(
+        "Newton residual", "Newton residual",
+        "What remains of the joints' equations at the end of a step, max |C + α̃λ|; no unit. A step has converged if it is "
+        "below newton_tolerance.",
+        "largest Newton residual at the end of a step"),
+    "momentum_residual": OfSteps(
+        "momentum residual", "momentum residual",
+        "The largest missing force on a segment at the end of a step, over the largest force of a joint. Only steps with "
+        "time.balance reduce it, to momentum_tolerance."),
+    "length_drift": OfSteps(
+        "length drift", "length drift",
+        "Change of the total length since the start, over that length; 0 is exact for rods that do not stretch.",
+        "largest length drift of a simulation, over the length"),
+    "joint_gap": OfSteps(
+        "joint gap/length", "joint gap / length",
+        "The largest distance between the two sides of a joint, over the joint's length; 0 is exact.",
+        "largest joint gap, over the length"),
+    "penetration": OfSteps(
+        "penetration/radius", "penetration / radius", "The deepest overlap of two bodies, over the smaller radius.",
+        "deepest penetration, over the radius"),
+    "contact_residual": OfSteps(
+        "contact residual/radius", "contact residual / radius",
+        "The largest correction of a contact that remains after a step, over the smaller radius. Contacts have converged "
+        "if it is below contact.tolerance."),
 }
 
 

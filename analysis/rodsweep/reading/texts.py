@@ -69,6 +69,12 @@ def range_text(counts):
     return str(min(counts)) if min(counts) == max(counts) else f"{min(counts)}–{max(counts)}"
 
 
+def simulations_text(counts):
+    """1 simulation, 5 simulations or 4–5 simulations."""
+    text = range_text(counts)
+    return f"{text} simulation{'s' if text != '1' else ''}"
+
+
 def aligned(rows):
     """Columns of equal width: the first is left-aligned, the others are right-aligned."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]

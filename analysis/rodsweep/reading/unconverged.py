@@ -9,7 +9,6 @@ import numpy as np
 
 from rodsweep.reading import texts
 
-RESIDUAL, NEWTON_TOLERANCE = "/steps/newton_residual", "time.newton_tolerance"
 LARGE = 10_000               # a step ends far from the Newton tolerance if its residual is this many times that
 LEAST_TOLERANCE = 1e-9       # the default; residuals do not fall much below
 TASKS_SHOWN = 5
@@ -34,32 +33,48 @@ def missed_text(file, tasks):
             "of a guess that missed it.")
 
 
-def newton_text(file, tasks):
-    """A sentence that names the tasks with the largest Newton residuals at the end of a step; empty if none is large.
-    """
-    over = _over_tolerance(file, tasks)
-    large = tasks[np.argsort(-over, kind="stable")][:np.count_nonzero(over > LARGE)]
-    if not len(large):
+def newton_text(file, tasks, times=LARGE):
+    """A sentence on the steps that end with a Newton residual over `times` newton_tolerance; empty if there are none."""
+    newton = np.isin(_values(file, "solve.method", ""), ("cg", "direct"))
+    tolerance = np.maximum(_values(file, "time.newton_tolerance", np.nan), LEAST_TOLERANCE)
+    return _steps_text(file, tasks, "/steps/newton_residual", np.where(newton, times * tolerance, np.nan),
+                       f"a Newton residual over {f'{times:,} times ' if times > 1 else ''}newton_tolerance",
+                       "More newton_iterations or a smaller time step may help.")
+
+
+def balance_text(file, tasks):
+    """The same on steps in balance that end with a momentum residual over momentum_tolerance."""
+    balance = _values(file, "time.balance", 0) == 1
+    tolerance = _values(file, "time.momentum_tolerance", np.nan)
+    return _steps_text(file, tasks, "/steps/momentum_residual", np.where(balance, tolerance, np.nan),
+                       "a momentum residual over momentum_tolerance",
+                       "More newton_iterations or a smaller time step may help.")
+
+
+def _values(file, name, otherwise):
+    return file.parameters[name].values if name in file.parameters else np.full(file.task_count, otherwise)
+
+
+def _steps_text(file, tasks, path, most, what, remedy):
+    """Names the steps whose value exceeds their task's `most` (NaN: not counted), the tasks with the largest first."""
+    if not file.has(path):
         return ""
-    named = ", ".join(_largest_residual(file, task) for task in large[:TASKS_SHOWN])
-    more = f", and {len(large) - TASKS_SHOWN} more" if len(large) > TASKS_SHOWN else ""
-    return (f"{len(large)} of {len(tasks)} tasks have steps that end with a Newton residual over {LARGE:,} times "
-            f"newton_tolerance: {named}{more}. More newton_iterations or a smaller time step may help.")
+    steps, over, worst = (np.zeros(file.task_count) for _ in range(3))
+    for owners, starts, rows in file.step_blocks(tasks[np.isfinite(most[tasks])], [path]):
+        allowed = np.repeat(most[owners], np.diff(np.append(starts, len(rows[path]))))
+        for sums, counted in ((steps, np.isfinite(rows[path])), (over, rows[path] > allowed)):
+            np.add.at(sums, owners, np.add.reduceat(counted.astype(float), starts))
+        np.fmax.at(worst, owners, np.fmax.reduceat(rows[path] / allowed, starts))
+    named = tasks[np.argsort(-worst[tasks], kind="stable")][:np.count_nonzero(over[tasks])]
+    if not len(named):
+        return ""
+    shown = ", ".join(_largest(file, path, task) for task in named[:TASKS_SHOWN])
+    more = f", and {len(named) - TASKS_SHOWN} more" if len(named) > TASKS_SHOWN else ""
+    return (f"{over.sum():,.0f} of {steps.sum():,.0f} steps, in {len(named)} of {len(tasks)} tasks, end with {what}: "
+            f"{shown}{more}. {remedy}")
 
 
-def _over_tolerance(file, tasks):
-    """The largest residual of each task over its tolerance; 0 without Newton iterations."""
-    worst = np.zeros(file.task_count)
-    if not all(name in file.parameters for name in (NEWTON_TOLERANCE, "solve.method")) or not file.has(RESIDUAL):
-        return worst[tasks]
-    for owners, starts, rows in file.step_blocks(tasks, [RESIDUAL]):
-        np.fmax.at(worst, owners, np.fmax.reduceat(rows[RESIDUAL], starts))
-    newton = np.isin(file.parameter("solve.method").values, ("cg", "direct"))
-    tolerance = np.maximum(file.parameter(NEWTON_TOLERANCE).values, LEAST_TOLERANCE)
-    return np.where(newton, worst / tolerance, 0)[tasks]
-
-
-def _largest_residual(file, task):
-    residual = file.rows(RESIDUAL, task)
+def _largest(file, path, task):
+    residual = file.rows(path, task)
     step = int(np.nanargmax(residual))
     return f"task {task} ({texts.short_text(residual[step], 2)} in step {step})"

@@ -16,15 +16,15 @@ DOT_WIDTH, BAR_WIDTH = 96, 120    # of the drawings in the table, in pixels
 
 @dataclass(frozen=True)
 class Row:
-    """A guess or the direct solve. Keys: ratio and all (of iterations), guess_us and cg_us, the SPEEDUPS over CG from
-    zero, and those over the direct solve with over_direct_ before the name."""
+    """A guess or the direct solve. Keys: ratio and all (of iterations), products and all_products, the SPEEDUPS over CG
+    from zero, and those over the direct solve with over_direct_ before the name."""
     label: str
     wins: bool         # whether it can be the best: not the oracle
     reached: bool      # whether all its solves reached the tolerance; only then it can have the fewest iterations
     texts: dict        # as summary.py writes them
     sort: dict         # the numbers of the texts, NaN where there is none
     estimates: dict    # of those that have an interval
-    parts: dict        # parts of the time of a solve, in us
+    parts: dict        # the time of guess and CG, or of the direct solve, over CG from zero: the inverse of the speedup
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,9 @@ class Answer:
     simulations: str
     missed: bool             # whether any solve missed the tolerance
     rows: list
+    zero_us: str             # median time of CG from zero, of a solve
     fewest: Row = None       # of iterations
+    leanest: Row = None      # the fewest products
     fastest: Row = None      # guess and CG
     whole: Row = None        # the whole step
     direct: Row = None
@@ -58,12 +60,12 @@ class Answer:
         return round(5 + (DOT_WIDTH - 10) * min(ratio / highest, 1), 1)
 
     def bars(self, row):
-        """(name, left edge, width) of the parts of a solve's time, in pixels; all rows of an answer have one scale."""
+        """(name, left edge, width) of Row.parts, in pixels; all rows of an answer have one scale."""
         longest = max((sum(other.parts.values()) for other in self.rows if math.isfinite(sum(other.parts.values()))),
                       default=math.nan)
         found, left = [], 0.0
-        for name, us in row.parts.items():
-            width = BAR_WIDTH * us / longest if longest > 0 else math.nan
+        for name, time in row.parts.items():
+            width = BAR_WIDTH * time / longest if longest > 0 else math.nan
             if math.isfinite(width):
                 found.append((name, round(left, 1), round(max(width, 0.4), 1)))
                 left += width
@@ -100,10 +102,11 @@ def _answer(file, block, guesses, t):
     rows = [_row(file, block, g, t) for g in guesses]
     direct = _direct(file, block)
     missed = any(block.unreached[g, t] for g in {*guesses, file.zero})
-    fewest = _best([row for row in rows if row.reached], "ratio", min)
-    return Answer(block, block.title, texts.range_text(block.ratio.count[guesses]), missed,
-                  rows + ([direct] if direct else []), fewest, _best(rows, "guess_cg", max), _best(rows, "step", max),
-                  direct)
+    reached = [row for row in rows if row.reached]
+    zero_us = texts.fixed_text(block.times["cg_us"].value[file.zero], 1) if block.times else "-"
+    return Answer(block, block.title, texts.simulations_text(block.ratio.count[guesses]), missed,
+                  rows + ([direct] if direct else []), zero_us, _best(reached, "ratio", min),
+                  _best(reached, "products", min), _best(rows, "guess_cg", max), _best(rows, "step", max), direct)
 
 
 def _best(rows, name, better):
@@ -114,36 +117,29 @@ def _best(rows, name, better):
 def _row(file, block, g, t):
     label, zero = file.guesses[g], g == file.zero
     estimates = {"ratio": block.ratio[g, t]}
-    if "all" in (block.beside or {}):
-        estimates["all"] = block.beside["all"][g, t]
+    beside = {name: estimate[g, t] for name, estimate in (block.beside or {}).items()}
+    estimates.update(beside)
     if block.speedup:
         estimates.update({name: block.speedup[name][g] for name in timings.SPEEDUPS})
         estimates.update({f"over_direct_{name}": block.speedup_over_direct[name][g] for name in timings.SPEEDUPS})
     shown = {name: texts.interval_text(estimate) for name, estimate in estimates.items()}
     sort = {name: float(estimate.value) for name, estimate in estimates.items()}
-    if "all" in shown:
-        shown["all"] = texts.fixed_text(sort["all"], 2)
+    shown.update({name: texts.fixed_text(sort[name], 2) for name in beside})
     if zero:    # the reference of all others
-        shown.update({name: "1" for name in ("ratio", "all", *timings.SPEEDUPS)
+        shown.update({name: "1" for name in ("ratio", *beside, *timings.SPEEDUPS)
                       if math.isfinite(sort.get(name, math.nan))})
     elif block.unreached[g, t] or block.unreached[file.zero, t]:
         shown["ratio"] += "*"
     parts = {}
-    if block.times is not None:
-        us = {name: float(block.times[name].value[g]) for name in blocks.TIMES}
-        sort.update({"guess_us": us["guess_us"], "cg_us": us["cg_us"]})
-        shown.update({"guess_us": texts.fixed_text(us["guess_us"], 2), "cg_us": texts.fixed_text(us["cg_us"], 1)})
-        if math.isfinite(us["cg_us"]):
-            parts = {"assemble": us["assemble_us"], "guess": us["guess_us"], "cg": us["cg_us"]}
+    if sort.get("guess_cg", 0) > 0:
+        guess = float(block.guess_share[g])
+        parts = {"guess": guess / sort["guess_cg"], "cg": (1 - guess) / sort["guess_cg"]}
     return Row(label, not zero and "oracle" not in label, not block.unreached[g, t], shown, sort, estimates, parts)
 
 
 def _direct(file, block):
     if not block.direct_speedup or not math.isfinite(block.times["direct_us"].value[file.zero]):
         return None
-    us = {name: float(block.times[name].value[file.zero]) for name in blocks.TIMES}
     shown = {name: texts.interval_text(estimate) for name, estimate in block.direct_speedup.items()}
     sort = {name: float(estimate.value) for name, estimate in block.direct_speedup.items()}
-    return Row("direct", False, True, {**shown, "cg_us": texts.fixed_text(us["direct_us"], 1)},
-               {**sort, "cg_us": us["direct_us"]}, dict(block.direct_speedup),
-               {"assemble": us["assemble_us"], "direct": us["direct_us"]})
+    return Row("direct", False, True, shown, sort, dict(block.direct_speedup), {"direct": 1 / sort["guess_cg"]})

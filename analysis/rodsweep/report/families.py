@@ -16,6 +16,10 @@ from rodsweep.reading import blocks, intervals, measures, timings
 DIRECT = "direct"
 SPEEDUPS = {"guess_cg": "speedup of guess and CG", "cg": "speedup of CG alone", "step": "speedup of the whole step"}
 TIMES = {"guess_us": "time of the guess", "cg_us": "time of CG, or of the direct solve"}
+# What is counted: its words, and the name and title of its ratio and of its number of a solve.
+COUNTED = {"iterations": ("iterations", ("ratio", "CG ratio"), ("iterations", "CG iterations of a solve")),
+           "matvecs": ("products with A, those of the guess included,", ("products_ratio", "CG ratio in products with A"),
+                       ("products", "products with A of a solve"))}
 OF_STEPS = ("length_drift", "joint_gap", "newton_residual", "penetration", "newton_iterations")    # in this order
 
 
@@ -23,7 +27,7 @@ OF_STEPS = ("length_drift", "joint_gap", "newton_residual", "penetration", "newt
 class Measure:
     name: str
     title: str
-    unit: str            # how a value is written: ratio, times, us, count or part
+    unit: str            # how a value and its axis are written: ratio, times, us, count or part
     log: bool            # whether its axis is logarithmic
     values: dict         # {"first": …, "all": …}, or {"": …}, of [simulation, line] or [simulation, line, tolerance]
     estimate: Callable   # intervals.mean or intervals.median
@@ -69,16 +73,19 @@ def of_guesses(file, sims, guesses, tolerances):
 def _ratios(file, sims, guesses, tolerances):
     if file.zero is None:
         return []
-    ratios = {newton: measures.cg_counts(file, sims, newton) for newton in measures.NEWTON}
     chosen = np.ix_(range(len(sims)), guesses, tolerances)
-    ratio = Measure("ratio", "CG ratio", "ratio", False,
-                    {newton: found.ratio[chosen] for newton, found in ratios.items()}, intervals.mean,
-                    "CG iterations with a guess over those from zero, summed over a simulation; mean over simulations. "
-                    "Below 1 the guess saves iterations.")
-    iterations = Measure("iterations", "CG iterations of a solve", "count", False,
-                         {"": ratios["first"].per_solve[chosen]}, intervals.mean,
-                         "First Newton iterations; mean over a simulation, then over simulations.")
-    return [iterations] if guesses == [file.zero] else [ratio, iterations]
+    found = []
+    for counted, (words, ratio, each) in COUNTED.items():
+        counts = {newton: measures.cg_counts(file, sims, newton, counted) for newton in measures.NEWTON}
+        if not np.isfinite(counts["first"].own).any():
+            continue
+        if guesses != [file.zero]:
+            found.append(Measure(*ratio, "ratio", False, {newton: of.ratio[chosen] for newton, of in counts.items()},
+                                 intervals.mean, f"The {words} with a guess over those from zero, summed over a simulation; "
+                                 "mean over simulations. Below 1 the guess saves some."))
+        found.append(Measure(*each, "count", False, {"": counts["first"].per_solve[chosen]}, intervals.mean,
+                             "First Newton iterations; mean over a simulation, then over simulations."))
+    return found
 
 
 def _times(file, parts, guesses, with_direct):

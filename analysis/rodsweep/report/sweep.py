@@ -5,7 +5,7 @@ import os
 from dataclasses import dataclass, field
 
 from rodsweep.reading import blocks, commandline, measures, remarks, texts, unconverged
-from rodsweep.report import animation, answers, axes, families, lines
+from rodsweep.report import animation, answers, axes, families, guesses, lines
 
 FAILURES_SHOWN = 12
 
@@ -30,9 +30,11 @@ class Sweep:
     oracle_note: str = ""
     missed: str = ""             # timed solves that missed the tolerance
     large_residuals: str = ""    # of Newton
+    unconverged: list = field(default_factory=list)    # sentences on steps that ended over a tolerance
     tolerance: str = ""          # of the iterations in the answers
     timed_tolerance: str = ""
     answers: list = field(default_factory=list)
+    words: dict = field(default_factory=dict)    # {label: sentence} of guesses and methods
     steps: list = field(default_factory=list)
     step_measures: dict = field(default_factory=dict)
 
@@ -53,7 +55,7 @@ def made(file, options, budget, room):
     """A Sweep of an open file. budget, room: axes.Budgets of estimates and of bytes of animations; options: those of
     report.py."""
     chosen = commandline.chosen_tasks(file, options)
-    guesses = commandline.chosen_guesses(file, options)
+    columns = commandline.chosen_guesses(file, options)
     tolerances = commandline.chosen_tolerances(file, options) or list(range(len(file.tolerances)))
     sims = measures.simulations(file, chosen)
     job = file.job()
@@ -61,7 +63,7 @@ def made(file, options, budget, room):
     films, films_left_out = animation.animations(file, chosen, room)
     data = {"families": [], "animations": films, "warning": "", "tolerance": 0,
             "tolerances": [texts.tolerance_label(file.tolerances[t]) for t in tolerances]}
-    found = _found(file, options, sims, guesses, tolerances, budget, data) if len(sims) else {}
+    found = _found(file, options, sims, columns, tolerances, budget, data) if len(sims) else {}
     return Sweep(name=job.get("name") or os.path.splitext(os.path.basename(file.path))[0], path=file.path, job=job,
                  census=measures.census(file, chosen), failures=failures, more_failures=more, runs=file.runs(),
                  revisions=remarks.revisions(file), data=data, films_left_out=films_left_out,
@@ -69,19 +71,22 @@ def made(file, options, budget, room):
                  else "", **found)
 
 
-def _found(file, options, sims, guesses, tolerances, budget, data):
+def _found(file, options, sims, columns, tolerances, budget, data):
     """Fields of a Sweep that come from its simulations, by name; completes `data`."""
     tasks, measured = sims.tasks(), blocks.blocks(file, sims, None, "first")
     headline = answers.headline_tolerance(file, sims, tolerances) if file.guesses else None
-    shown = [{**axes.packed(file, family, budget, options.x), "lines": lines.packed(family.lines)}
-             for family in families.families(file, sims, guesses, tolerances)]
+    found = families.families(file, sims, columns, tolerances)
+    shown = [{**axes.packed(file, family, budget, options.x), "lines": lines.packed(family.lines)} for family in found]
     warning = remarks.timing_warning(file, tasks)
     data.update(families=[family for family in shown if family["axes"]], warning=warning,
                 tolerance=0 if headline is None else tolerances.index(headline))
     return {"conditions": remarks.conditions(file, tasks), "warning": warning,
-            "oracle_note": remarks.oracle_note(file, guesses).strip(), "missed": unconverged.missed_text(file, tasks),
+            "oracle_note": remarks.oracle_note(file, columns).strip(), "missed": unconverged.missed_text(file, tasks),
             "large_residuals": unconverged.newton_text(file, tasks),
+            "unconverged": list(filter(None, (unconverged.newton_text(file, tasks, times=1),
+                                              unconverged.balance_text(file, tasks)))),
+            "words": guesses.described(file, [label for family in found for label in family.lines]),
             "tolerance": "" if headline is None else texts.tolerance_label(file.tolerances[headline]),
             "timed_tolerance": remarks.solve_tolerance(file, tasks),
-            "answers": answers.answers(file, measured, guesses, headline),
-            "steps": blocks.step_rows(measured, guesses, file.guesses), "step_measures": blocks.step_measures(measured)}
+            "answers": answers.answers(file, measured, columns, headline),
+            "steps": blocks.step_rows(measured, columns, file.guesses), "step_measures": blocks.step_measures(measured)}

@@ -2,6 +2,7 @@
 // drawing anew; every line is a group of its own, which the cursor brings to the front.
 
 const chartHeight = 320;
+const chartTop = 30; // room for the axis's label
 const dodge = 9; // pixels that lines of one point are spread over, so that intervals do not hide each other
 const categoryDodge = 0.5; // the same between words, of their distance
 
@@ -77,7 +78,7 @@ function drawChart(family, measure, axis, panel, series, range, width) {
     height: chartHeight,
     marginLeft: 52,
     marginRight: 16,
-    marginTop: 22,
+    marginTop: chartTop,
     marginBottom: axis.categorical ? 62 : 40,
     style: { background: "none", color: "var(--ink)", fontFamily: "inherit", fontSize: "12px", overflow: "visible" },
     x: {
@@ -97,7 +98,9 @@ function drawChart(family, measure, axis, panel, series, range, width) {
     y: {
       type: measure.log ? "log" : "linear",
       domain: range,
-      label: null,
+      label: measure.title + unitSigns[measure.unit],
+      labelAnchor: "top",
+      labelArrow: "none",
       grid: true,
       ...(measure.log ? { ticks: logTicks(...range), tickFormat: (y) => tickText(y, measure.unit) } : { ticks: 6 }),
     },

@@ -6,7 +6,7 @@ function addCursor(frame, plot, { measure, axis, panel, series, say }) {
   const xScale = plot.scale("x"),
     yScale = plot.scale("y");
   const places = panel.x.map((x, k) => xScale.apply(axis.categorical ? panel.text[k] : x));
-  const rule = svgElement("line", { class: "cursor", y1: 22, y2: chartHeight - (axis.categorical ? 62 : 40) });
+  const rule = svgElement("line", { class: "cursor", y1: chartTop, y2: chartHeight - (axis.categorical ? 62 : 40) });
   rule.style.display = "none";
   plot.append(rule);
   frame.append(box);
@@ -55,13 +55,15 @@ function addCursor(frame, plot, { measure, axis, panel, series, say }) {
       element("p", { class: "small" }, countText(panel.simulations[k])),
     );
     box.hidden = false;
-    // On the side where it hides less of its own chart, if it fits there.
-    const there = frame.getBoundingClientRect().left + places[k],
+    // On the side where it hides less of its own chart, if it fits there; never beyond the window.
+    const begin = frame.getBoundingClientRect().left,
+      there = begin + places[k],
       room = box.offsetWidth + 14;
     const fitsLeft = there > room,
       fitsRight = there + room < document.documentElement.clientWidth;
     const left = fitsLeft && (!fitsRight || places[k] < Math.min(room, frame.clientWidth - places[k]));
-    box.style.left = left ? "auto" : `${places[k] + 14}px`;
+    const most = document.documentElement.clientWidth - begin - box.offsetWidth;
+    box.style.left = left ? "auto" : `${Math.min(places[k] + 14, most)}px`;
     box.style.right = left ? `${frame.clientWidth - places[k] + 14}px` : "auto";
     if (spoken) {
       const one = lines.find((candidate) => candidate.index === chosen);
@@ -82,7 +84,7 @@ function addCursor(frame, plot, { measure, axis, panel, series, say }) {
     for (const group of plot.querySelectorAll("g.faded")) group.classList.remove("faded");
   }
 
-  frame.addEventListener("pointermove", (event) => {
+  function pointAt(event) {
     const bounds = plot.getBoundingClientRect();
     const x = event.clientX - bounds.left,
       y = event.clientY - bounds.top;
@@ -90,9 +92,12 @@ function addCursor(frame, plot, { measure, axis, panel, series, say }) {
     const lines = known(k);
     const nearest = d3.least(lines, (one) => Math.abs(yScale.apply(at(one, k).value) - y));
     show(k, nearest?.index, false);
-  });
-  frame.addEventListener("pointerleave", () => {
-    if (document.activeElement !== frame) hide();
+  }
+  frame.addEventListener("pointermove", pointAt);
+  frame.addEventListener("pointerdown", pointAt); // a tap moves nothing
+  frame.addEventListener("pointerleave", (event) => {
+    // A finger leaves as it is lifted: its values stay until the next tap outside, which blurs the frame.
+    if (event.pointerType === "mouse" && document.activeElement !== frame) hide();
   });
   frame.addEventListener("blur", hide);
   frame.addEventListener("keydown", (event) => {

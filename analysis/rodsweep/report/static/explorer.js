@@ -289,7 +289,7 @@ function startExplorer(root, sweep, family, number) {
   }
 
   function chart(shown, panel, series, range, width) {
-    const caption = element("figcaption", {}, element("b", {}, panel.caption), ` ${shown.title}`);
+    const caption = element("figcaption", {}, panel.caption);
     if (!series.length) {
       return element(
         "figure",

@@ -12,6 +12,9 @@ const units = {
   part: (value) => significant(value, 2),
 };
 
+/** What stands behind a measure's title on an axis. */
+const unitSigns = { ratio: " (–)", times: " (×)", us: " (µs)", count: "", part: " (–)" };
+
 function significant(value, digits) {
   if (value === 0) return "0";
   const size = Math.abs(value);
