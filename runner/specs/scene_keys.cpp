@@ -238,7 +238,7 @@ void add_curves(Table& table) {
     return [member](Curves & curves) -> auto& { return curves.how.*member; };
   };
   table.required(
-      file_key("curves", FileKind::curves, "file of lines through points: .csv, .txt, .json or .obj (docs/jobs.md)"),
+      file_key("curves", FileKind::curves, "file of lines through points: .csv, .txt, .json or .obj (docs/curves.md)"),
       &Curves::curves);
   table.optional(length_key("curves_unit_m", "length unit of the curves' file"), &Curves::unit_m);
   table.optional(choice_key("interpolation", "between the points of a curve: straight lines, or a smooth spline"),

@@ -229,7 +229,7 @@ KeyTable<ContactSettings> contact_keys() {
                 &Settings::tolerance)
       .optional(
           integer_key("sweeps",
-                      "maximum number of sweeps over all contacts, there and back, after a projection of the rods")
+                      "maximum number of contact sweeps, over all contacts and back, after a projection of the rods")
               .from(1, 10000),
           &Settings::sweeps)
       .optional(number_key("recovery",
