@@ -1,4 +1,5 @@
-// A simulation that starts from a frame of another continues it, in every scene and by both integrators.
+// A simulation that starts from a frame of another continues it, in every scene and by both integrators; and what comes
+// to rest stays there.
 #include <cmath>
 
 #include "runner/measure/start_state.hpp"
@@ -39,6 +40,38 @@ TEST_CASE("a simulation cut in two is the uncut one, in every scene and by both 
         CHECK(apart <= (scene.contact ? 1e-4 : 1e-15));
       }
     }
+}
+
+TEST_CASE("every scene that comes to rest stays where it is, in steps of the default") {
+  const scene_samples::SceneFiles files;
+  int rested = 0;
+  for (const Json& sample : scene_samples::samples()) {
+    INFO(sample["type"]);
+    const Plan plan(files.job(sample, {{"time", {{"steps", 3000}, {"until", {{"rest", 1e-6}}}}},
+                                       {"record", {{"trajectory_every", 3000}, {"states", true}}}}));
+    const auto record = std::make_shared<const TaskRecord>(record_of(plan));
+    if (record->outcome != TaskOutcome::ok) continue;  // a rod that is fed or pulled for ever tears
+    const bool rests = record->message.find("not at rest") == std::string::npos;
+    CHECK(rests == (record->tasks.steps_done[0] < 3000));
+    if (!rests) continue;
+    ++rested;
+    const TaskSpec spec = Plan(files.job(sample)).spec(0);
+    Scene scene = build_scene(spec.scene);
+    const StartState start(record, {}, scene);
+    std::vector<Vector3> before;
+    for (const Rod& rod : scene.rods) before.insert(before.end(), rod.position.begin(), rod.position.end());
+    DirectSolve direct(scene);
+    LinearProjection projection(scene, direct, spec.time.momentum_tolerance);
+    TimeStepper stepper(scene, step_settings(spec.time));
+    for (int step = 0; step < 100; ++step) stepper.step(projection);
+    double moved = 0;
+    std::size_t s = 0;
+    for (const Rod& rod : scene.rods)
+      for (const Vector3& position : rod.position) moved = std::max(moved, (position - before[s++]).norm());
+    CAPTURE(moved, record->tasks.steps_done[0]);
+    CHECK(moved < 1e-4);
+  }
+  CHECK(rested >= 8);
 }
 
 }  // namespace rodsweep::law_every_start
