@@ -5,7 +5,8 @@ Writes into a folder:
 
   SCENE-JOINTS-tuning-K.h5, SCENE-JOINTS-test-K.h5   A, b, x and poses of each first Newton iteration of a simulation,
                                                      for rodsweep.systems()
-  reference.csv    iterations of CG to each tolerance with every preconditioner and guess, sum and systems by simulation
+  reference.csv    iterations of CG to each tolerance with every preconditioner and guess, and products with A before the
+                   first one: sums over the systems of each file
   README.md        what is in it
   SHA256SUMS       checksums of all files
 
@@ -32,16 +33,38 @@ EXAMPLES = """examples:
 PRECONDITIONER, TUNING = "solve.preconditioner", 2      # samples for tuning
 CARD = """# Linear systems of Cosserat rods
 {systems} systems A x = b of {simulations} simulations: {scenes}, steps of {step_s} s, the
-first Newton iteration of each. Made by `jobs/studies.py benchmark` of rodsweep ({revision}), jobs/benchmark.json. MIT
+first Newton iteration of each. Made with rodsweep {revision}; every file has its job in the attribute `job`. MIT
 licence.{failed}
 
-- `SCENE-JOINTS-tuning-K.h5` to choose settings and to train on, `SCENE-JOINTS-test-K.h5` to report.
-- `rodsweep.systems(FILE)` in Python has A as a scipy matrix of 6x6 blocks, b, the solution x, the poses and constants of
-  the rod (docs/python.md). `rodsweep-matrices` writes Matrix Market, PETSc and NumPy files.
-- A guess may use all earlier systems of its file and their x, as in a simulation.
-- `reference.csv`: for each file, preconditioner, guess and tolerance of ||b - A x|| relative to ||b|| the sum of CG's
-  iterations over its systems. Products with A that the guess itself takes are not in it.
-- `rodsweep run` measures a guess in Python on the same systems, with times (docs/own-guess.md).
+- `SCENE-JOINTS-tuning-K.h5` to choose settings and to train on, `SCENE-JOINTS-test-K.h5` to report. Both have the
+  solutions x, since a guess may use those of all earlier systems of its file, as in a simulation. So nothing is hidden:
+  do not train on test files.
+- In h5py a system k has `blocks[k]`, `b[k]`, `x[k]`, and before the solve `lambda[k]`, `position_m[k]`, `orientation[k]`;
+  all are in the group `rods/0`, with the constants of the rod. A is
+  `scipy.sparse.bsr_matrix((blocks[k], columns, row_begin))`. The Python package of rodsweep reads all this with
+  `rodsweep.systems(FILE)`.
+- `reference.csv` has sums over the systems of a file, for each preconditioner and guess: `start_products`, the products
+  with A before the first iteration (those of the guess, and one for the residual of a non-zero guess), and the
+  iterations of CG until ||b - A x|| is each tolerance times ||b||. Their sum is all products.
+
+With the package, this scores a guess on the test files with the preconditioner jacobi, in seconds:
+
+```python
+import rodsweep
+
+class Guess:
+    def __init__(self, rods, options):
+        self.last = None
+
+    def propose(self, system):          # x0, or (x0, n) after n products with A; None: zero
+        return self.last
+
+    def accept(self, system, x):        # the solution of this system
+        self.last = x
+
+rows = rodsweep.benchmark(Guess, ".")   # reference.csv, and the guess as "own"
+print(rows.pivot(index="systems", columns="guess", values="0.01").to_string())
+```
 
 {rows}
 """
@@ -63,11 +86,13 @@ def stems(file):
 
 def reference(file, names):
     """Rows of reference.csv."""
-    iterations, tolerances = file.h5["/tasks/iterations_sum"][:], file.tolerances
-    rows = [["systems", "preconditioner", "guess", *(f"{tolerance:g}" for tolerance in tolerances)]]
+    iterations, products = (file.h5[f"/tasks/{name}_sum"][:] for name in ("iterations", "matvecs"))
+    start = (products - iterations)[..., 0]    # the same for every tolerance
+    rows = [["systems", "preconditioner", "guess", "start_products", *(f"{tolerance:g}" for tolerance in file.tolerances)]]
     for task in np.flatnonzero(file.ok):
         for g, guess in enumerate(file.guesses):
-            rows.append([names[task], file.parameter(PRECONDITIONER).values[task], guess, *iterations[task, g]])
+            rows.append([names[task], file.parameter(PRECONDITIONER).values[task], guess, start[task, g],
+                         *iterations[task, g]])
     return rows
 
 

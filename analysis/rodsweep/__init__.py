@@ -6,6 +6,7 @@ pictures and films. The scripts of analysis/ use them; they are installed as `ro
 """
 
 try:
+    from rodsweep.benchmarking import benchmark
     from rodsweep.jobs import Job, Plan
     from rodsweep.program import JobError, JobWarning
     from rodsweep.reading.errors import UserError
@@ -19,8 +20,8 @@ except ModuleNotFoundError as error:
                       name=error.name) from None
 
 __version__ = "2.0.0"    # that of CMakeLists.txt (tested)
-__all__ = ["Job", "JobError", "JobWarning", "Plan", "Results", "Systems", "UserError", "grid", "integer", "log_uniform",
-           "open", "systems", "uniform", "zip"]
+__all__ = ["Job", "JobError", "JobWarning", "Plan", "Results", "Systems", "UserError", "benchmark", "grid", "integer",
+           "log_uniform", "open", "systems", "uniform", "zip"]
 
 
 def open(path):

@@ -18,6 +18,7 @@ from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.results import Results
 
 TASKS_FAILED, DIVERGED = 3, 9            # exit codes of a run with results
+FAILURES_SHOWN = 5                       # as many as the program prints
 
 
 class Plan(dict):
@@ -120,9 +121,9 @@ class Job:
         if self._values["kind"] == "train":
             return results
         with SweepFile(results) as file:
-            census = measures.census(file, np.ones(file.task_count, dtype=bool))
-        if census.failed:
-            warnings.warn(f"{results}: {census.text()}", JobWarning, stacklevel=2)
+            failed = _failures(file)
+        if failed:
+            warnings.warn(f"{results}: {failed}", JobWarning, stacklevel=2)
         return Results(results) if self._values["kind"] == "sweep" else results
 
     def _is_complete(self, results, path):
@@ -154,6 +155,15 @@ class Job:
             return text
         except (TypeError, ValueError) as error:
             raise JobError(program.encodable(f"{self.name}: {error}")) from None
+
+
+def _failures(file):
+    """Counts of outcomes and the messages of the first failed tasks, as the program prints them; "" if none failed."""
+    every = np.ones(file.task_count, dtype=bool)
+    first, more = measures.failures(file, every, FAILURES_SHOWN)
+    lines = [f"  task {task} {outcome}: {message}" for task, outcome, message in first]
+    lines += [f"  and {more} more"] if more else []
+    return "\n".join([measures.census(file, every).text(), *lines]) if first else ""
 
 
 def _plain(value):

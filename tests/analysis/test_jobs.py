@@ -183,7 +183,9 @@ class Messages(WithJobs):
         self.assertIn(f"{self.folder}/m/none.h5 was not found; the path is relative to {self.folder}", said)
 
     def test_failed_tasks_and_warnings_of_the_program_are_warnings(self):
-        with self.assertWarnsRegex(rodsweep.JobWarning, "^results/tiny.h5: 0 of 3 tasks ok, failed: 3 timed_out$"):
+        with self.assertWarnsRegex(rodsweep.JobWarning, "^results/tiny.h5: 0 of 3 tasks ok, failed: 3 timed_out\n"
+                                   "  task 0 timed_out: step 0: the time limit of 1e-09 s has passed .*\n"
+                                   "  task 1 timed_out: .*\n  task 2 timed_out: .*$"):
             self.run_job(tiny(), task_time_limit=1e-9)
         with self.assertWarnsRegex(rodsweep.JobWarning, "3 timed_out"):
             self.run_job(tiny())
@@ -192,6 +194,19 @@ class Messages(WithJobs):
         with self.assertWarnsRegex(rodsweep.JobWarning, "^tiny: scene.radius_m: 50 m is outside") as caught:
             tiny(scene={**ROD, "radius_m": 50}).validate()
         self.assertEqual(caught.filename, __file__)    # the line of the user
+
+    def test_a_warning_of_failed_tasks_has_the_lines_that_the_program_prints(self):
+        Path("g.py").write_text("class Guess:\n    def __init__(self, rods, options): pass\n"
+                                "    def propose(self, system): return 1 / 0\n")
+        job = tiny(samples=12, guesses=["zero", {"python": {"file": "g.py"}}])
+        with self.assertWarns(rodsweep.JobWarning) as caught:
+            self.run_job(job)
+        job.write("x.json")
+        said = subprocess.run([program.path(), "run", "x.json", "-o", "x.h5"], capture_output=True, text=True, check=False)
+        printed = [line for line in said.stdout.splitlines() if line.startswith("  ")]
+        self.assertEqual(str(caught.warning).splitlines()[1:], printed)
+        self.assertIn("  task 4 error: g.py: ZeroDivisionError: division by zero (g.py:3 in propose)", printed)
+        self.assertEqual(printed[-1], "  and 7 more")
 
     def test_retrained_weights_do_not_give_the_results_of_old_ones(self):
         Path("g.py").write_text("class Guess:\n"

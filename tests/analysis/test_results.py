@@ -116,6 +116,17 @@ class Frames(Opened):
         self.assertEqual(results.columns("solves").meaning["iterations_1e-2"], "CG iterations; 1e-2")
         self.assertEqual(self.open(failed={}, pending=()).missing, "")
 
+    def test_steps_are_numbered_from_zero_in_every_task(self):
+        results = self.open(steps=5, pending=(4, 9))
+        with unittest.mock.patch.object(tidy, "BLOCK_ROWS", 3):    # a task is in several blocks
+            steps = results.steps()
+            self.assertEqual(results.dataset("steps", "step").step.values.tolist(), steps.step.tolist())
+        self.assertEqual(steps.groupby("task").step.apply(list).tolist(), 22 * [[0, 1, 2, 3, 4]])
+        self.assertEqual(results.columns("steps").meaning["step"], "time step, from 0")
+        self.assertEqual(results.steps(["task", "step"], where=["step>3", "task=3,5"]).values.tolist(), [[3, 4], [5, 4]])
+        drift = results.solves(where="guess=zero").merge(steps, on=["task", "step"]).length_drift
+        self.assertTrue(drift.notna().all())
+
     def test_groups_of_several_columns_are_the_combinations_that_exist(self):
         results = self.open(failed={3: "diverged", 12: "diverged"})    # of both scenes, with few segments
         with warnings.catch_warnings():
@@ -155,7 +166,7 @@ class Frames(Opened):
             self.assertEqual((len(frame), frame.attrs["missing"]), (0, "24 pending of 24 tasks"))
         self.assertIn("quantity", results.summary(by="scene.segments"))
         self.assertEqual(list(results.blocks("solves")), [])
-        self.assertEqual(results.dataset("solves").sizes["row"], 0)
+        self.assertEqual([results.dataset(level).sizes["row"] for level in ("solves", "steps")], [0, 0])
 
 
 class Datasets(Opened):

@@ -1,8 +1,11 @@
 """`rodsweep systems` and matrices.py: the systems of a task are those that it solved, in every format."""
 
+import contextlib
 import csv
+import io
 import json
 import os
+import re
 import subprocess
 
 from running import Scripts, run
@@ -146,15 +149,49 @@ class Exported(Scripts):
         subprocess.run(["sha256sum", "--check", "--quiet", "SHA256SUMS"], cwd="data", check=True)
         with open("data/reference.csv", encoding="utf-8", newline="") as table, h5py.File(file) as results:
             rows = list(csv.reader(table))
-            self.assertEqual(rows[0][:5], ["systems", "preconditioner", "guess", "0.1", "0.01"])
+            self.assertEqual(rows[0][:6], ["systems", "preconditioner", "guess", "start_products", "0.1", "0.01"])
             self.assertEqual(len(rows), 1 + 5 * 2)
-            self.assertEqual([int(count) for count in rows[1][3:]], results["/tasks/iterations_sum"][0, 0].tolist())
+            self.assertEqual([int(count) for count in rows[1][4:]], results["/tasks/iterations_sum"][0, 0].tolist())
+            self.assertEqual([row[3] for row in rows[1:3]], ["0", "10"])    # zero, previous
         with rodsweep.systems("data/bending_rod-8-test-0.h5") as systems:
             self.assertEqual(len(systems), 11)
+            self.assertLess(np.linalg.norm(systems[5].b - systems[5].A @ systems[5].x), 1e-10 * np.linalg.norm(systems[5].b))
         with open("data/README.md", encoding="utf-8") as card:
             said = card.read()
         self.assertIn("33 systems A x = b of 3 simulations: bending rod, steps of 0.02 s", said)
         self.assertRegex(said, r"1 of 6 tasks failed and are left out: bending_rod-8-t\S+ with \w+ \(diverged\)\.")
+
+    def test_the_code_of_the_benchmarks_card_counts_as_the_program_does(self):
+        self.assertEqual(run("benchmark_data.py", self.swept(samples=3), "-o", "data").code, 0)
+        with open("data/README.md", encoding="utf-8") as card:
+            code = re.search(r"```python\n(.*?)```", card.read(), re.DOTALL)[1]
+        os.chdir("data")
+        names = {}
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            exec(code, names)
+        self.assertRegex(said.getvalue(), r"guess +own +previous +zero\n")
+        rows = names["rows"].set_index("guess")
+        self.assertEqual(set(rows.systems), {"bending_rod-8-test-0"})
+        own, program = rows.loc["own"], rows.loc["previous"]
+        self.assertEqual(own.start_products, program.start_products)
+        for tolerance in ("0.1", "0.01", "0.001", "0.0001"):
+            self.assertAlmostEqual(own[tolerance], program[tolerance], delta=2)    # rounding in 11 systems
+        self.assertGreater(program["0.01"], 20)
+
+        class Solved:
+            """Knows the next solution, of two products with A; accepts nothing."""
+
+            def __init__(self, rods, options):
+                self.rods = rods
+
+            def propose(self, system):
+                assert self.rods[0] is system.of and system.blocks.shape[1:] == (6, 6)
+                return system.x.reshape(-1, 6), 2
+
+        own = rodsweep.benchmark(Solved, ".", "tuning").query("guess == 'own'")
+        self.assertEqual(own[["start_products", "0.0001"]].values.tolist(), 2 * [[11 * 3, 0]])
+        with self.assertRaisesRegex(rodsweep.UserError, r"^\. has no files \*-tests-\*.h5 of benchmark_data.py$"):
+            rodsweep.benchmark(Solved, ".", "tests")
 
     def test_what_is_no_system_is_refused(self):
         file = self.swept()

@@ -20,6 +20,7 @@ from rodsweep.reading.hdf5 import UNREADABLE, as_text, decoded, is_column, opene
 from rodsweep.reading.parameters import Parameter
 
 BLOCK_ROWS = 1 << 17
+ROW = "row"    # in blocks of rows, a column of their numbers
 ALL_BY = "rodsweep query FILE --columns help lists all"    # in the message for an unknown column of the tasks
 LOADED = ("point", "sample", "own_guess", "first_step", "steps", "first_solve", "solves")    # of /tasks, as attributes
 
@@ -210,4 +211,5 @@ class SweepFile:
             yield self._block(owners, starts, begin, end, columns)
 
     def _block(self, owners, starts, begin, end, columns):
-        return np.array(owners), np.array(starts), {path: self.h5[path][begin:end] for path in columns}
+        found = {path: np.arange(begin, end) if path == ROW else self.h5[path][begin:end] for path in columns}
+        return np.array(owners), np.array(starts), found

@@ -38,6 +38,11 @@ class System:
     orientation: np.ndarray        # [segments, 4] (w, x, y, z)
     of: Rod
 
+    @property
+    def blocks(self):
+        """[blocks, 6, 6] of A, by rows."""
+        return self.A.data
+
 
 class Systems:
     """The systems of a file, in the order in which they were solved. Each is read when it is asked for."""

@@ -2,7 +2,8 @@
 
 A row of the level `tasks` is one task x guess x tolerance; of `steps`, one step. A row of `solves` is a solve x guess,
 with a column per tolerance of datasets that have this axis. Every dataset of the level is a column with its name,
-followed by those of /timing, so that columns of later versions are included. -1 of integers (not reached, not run), NaN
+followed by those of /timing, so that columns of later versions are included. `step` of the level `steps` is not in the
+file: it follows from the place of the row. -1 of integers (not reached, not run), NaN
 and empty texts are missing values. Blocks have at most BLOCK_ROWS rows of the file.
 """
 
@@ -15,7 +16,8 @@ import numpy as np
 from rodsweep.reading import conditions, measures, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
 from rodsweep.reading.hdf5 import decoded
-from rodsweep.reading.task_columns import FIRST_ROWS, TaskColumns, datasets
+from rodsweep.reading.sweepfile import ROW
+from rodsweep.reading.task_columns import FIRST_ROWS, Dataset, TaskColumns, datasets
 
 LEVELS = ("tasks", "solves", "steps")
 BLOCK_ROWS = 1 << 13
@@ -69,6 +71,8 @@ class Tidy:
         self.guesses, self.tolerances = list(guesses), list(tolerances)
         self.labels, self.guessing = np.array(file.guesses, dtype=str), measures.has_guesses(file)
         self.datasets, self.parts, self.whole, self.of_tasks = {}, {}, {}, TaskColumns(file)
+        if level == "steps":
+            self.datasets["step"] = Dataset(ROW, (), "1", "time step, from 0", np.dtype(np.int64), False)
         mark = mark_of(file, level)
         rows = file.task_count if level == "tasks" else len(file.h5[mark]) if mark else 0
         for folder in (f"/{level}", f"/timing/{level}"):
@@ -182,10 +186,14 @@ class Tidy:
                 values = values[:, guesses] if "guess" in axes else values
                 found[name].append(values[:, :, tolerances] if "tolerance" in axes else values)
         if not owners:
-            empty = {name: np.empty((0, *self.file.h5[self.datasets[name].path].shape[1:])) for name in names}
+            empty = {name: np.empty((0, *self._shape(self.datasets[name].path))) for name in names}
             return np.empty(0, dtype=np.int64), guesses, tolerances, empty
         whole = {name: np.concatenate(parts) for name, parts in found.items()}
         return np.concatenate(owners), guesses, tolerances, whole
+
+    def _shape(self, path):
+        """Of a dataset's row."""
+        return () if path == ROW else self.file.h5[path].shape[1:]
 
     def narrowed(self, where):
         """The tasks, guesses and tolerances that meet the conditions, and the remaining conditions, which are on
@@ -228,6 +236,8 @@ class Tidy:
         mark = mark_of(self.file, self.level)
         for owners, starts, rows in read(chosen, list(dict.fromkeys([*paths, mark])), BLOCK_ROWS):
             tasks = np.repeat(owners, np.diff(np.append(starts, len(rows[mark]))))
+            if ROW in rows:    # the step
+                rows[ROW] = rows[ROW] - self.file.first_step[tasks]
             reached = np.isfinite(rows[mark]) if rows[mark].dtype.kind == "f" else rows[mark] >= 0
             if reached.all():
                 yield tasks, rows
