@@ -35,20 +35,24 @@ def missed_text(file, tasks):
 
 def newton_text(file, tasks, times=LARGE):
     """A sentence on the steps that end with a Newton residual over `times` newton_tolerance; empty if there are none."""
-    newton = np.isin(_values(file, "solve.method", ""), ("cg", "direct"))
     tolerance = np.maximum(_values(file, "time.newton_tolerance", np.nan), LEAST_TOLERANCE)
-    return _steps_text(file, tasks, "/steps/newton_residual", np.where(newton, times * tolerance, np.nan),
+    return _steps_text(file, tasks, "/steps/newton_residual", np.where(_has_newton(file), times * tolerance, np.nan),
                        f"a Newton residual over {f'{times:,} times ' if times > 1 else ''}newton_tolerance",
                        "More newton_iterations or a smaller time step may help.")
 
 
 def balance_text(file, tasks):
     """The same on steps in balance that end with a momentum residual over momentum_tolerance."""
-    balance = _values(file, "time.balance", 0) == 1
+    balance = _has_newton(file) & (_values(file, "time.balance", 0) == 1)    # others never balance
     tolerance = _values(file, "time.momentum_tolerance", np.nan)
     return _steps_text(file, tasks, "/steps/momentum_residual", np.where(balance, tolerance, np.nan),
                        "a momentum residual over momentum_tolerance",
                        "More newton_iterations or a smaller time step may help.")
+
+
+def _has_newton(file):
+    """Of every task, whether its method has Newton iterations."""
+    return np.isin(_values(file, "solve.method", ""), ("cg", "direct"))
 
 
 def _values(file, name, otherwise):
