@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Trains variants of a network with one setting changed at a time: `jobs/studies.py variants` and `jobs/studies.py ablation` call it.
+"""Trains variants of a network with one setting changed at a time, and the networks of the score: `jobs/studies.py
+variants`, `ablation` and `score_networks` call it.
 
     analysis/results/variants.py PROGRAM RESULTS FAMILY
 
@@ -53,6 +54,9 @@ LATTICES = {
 }
 
 
+SEEDS = {"": 1, "-2": 2, "-3": 3}    # the first ones, whatever comes of them
+
+
 def of_the_paper(epochs):
     """Variants of the paper's network: `epochs` times 256 simulations of 50 steps, or as many steps on other data."""
     every = {"training.systems": "all", "training.epochs": epochs // 4}
@@ -91,12 +95,25 @@ def of_the_paper(epochs):
     }
 
 
+def damped(scenes):
+    """The scenes of the score are damped."""
+    return [scene if "damping_per_s" in scene else {**scene, "damping_per_s": {"uniform": [0, 3]}} for scene in scenes]
+
+
+def on_every_step(samples):
+    """The steps of the score (docs/score.md), each sample with both integrators, with and without balance."""
+    return {"samples": samples, "scene.zip": damped, "time.step_s": {"log_uniform": [0.0005, 0.08]},
+            "time.integrator": {"grid": ["euler", "bdf2"]}, "time.balance": {"grid": [False, True]}}
+
+
 # Data sets other than that of jobs/SCENE_data.json: the changes to that job; None: a job of jobs/.
 DATA = {
     "100": None,
     "0.01_s": {"time.step_s": 0.01},
     "0.005_s": {"time.step_s": 0.005},
     "100_steps": {"time.steps": 100, "record.systems": "first"},
+    "every_step_of_rods": on_every_step(16),    # the last two are for validation
+    "every_step_of_lattices": on_every_step(8),    # the last one is
 }
 
 
@@ -119,7 +136,15 @@ NOT_ON_HELICES = {"size_16", "size_64", "steps_2", "steps_8", "hidden_layers_3",
                   "globals_in_the_loop", "base_extrapolation", "encoding_linear_system", "all_paper"}
 
 
+def of_the_score(name, data):
+    return Family(f"train_{name}", f"score_{data}", {"data": f"every_step_of_{data}"},
+                  {name.replace("_", "-") + suffix: {"seed": seed} for suffix, seed in SEEDS.items()}, f"{data}_data")
+
+
 FAMILIES = {
+    "score_rods": of_the_score("rods", "rods"),
+    "score_rods_large": of_the_score("rods_large", "rods"),
+    "score_lattices": of_the_score("lattices", "lattices"),
     "rods": Family("train_rods", "rods_variants", {"training.epochs": 15}, RODS),
     "lattices": Family("train_lattices", "lattices_variants", {"training.epochs": 5}, LATTICES, "lattices_data"),
     "ablation_bending": ablation("bending", 10),
@@ -128,7 +153,7 @@ FAMILIES = {
 
 
 def changed(original, name, changes):
-    """The job `original` of jobs/ with another name and changed values, {path: value}."""
+    """The job `original` of jobs/ with another name and changed values, {path: value or its function of the old one}."""
     with open(os.path.join(JOBS, original + ".json"), encoding="utf-8") as file:
         job = json.load(file)
     del job["$schema"]
@@ -138,7 +163,7 @@ def changed(original, name, changes):
         of = job
         for part in parts:
             of = of.setdefault(part, {})
-        of[last] = value
+        of[last] = value(of[last]) if callable(value) else value
     return job
 
 

@@ -51,6 +51,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
   } else {
     run(rod, system, at, x, moves != nullptr);
     proposal.renewed = use_.lag_steps > 0;
+    proposal.with_network = true;
   }
   double length = 1, energy = 0;
   const bool best_length = model_->net.settings().best_length || use_.corrections > 1, known = best_length || may_harm;

@@ -236,7 +236,11 @@ std::vector<Column> all_columns() {
                  "timed solves of the guess; -1: it was not tried"),
       task_times("/timing/tasks/solves_missed", &Timing::solves_missed, guess, "1",
                  "timed solves that missed their tolerance; the task then has no valid times of this guess"),
+      task_times("/timing/tasks/solves_with_network", &Timing::solves_with_network, guess, "1",
+                 "timed solves for which a network ran, in the guess or the preconditioner's set-up; -1: not tried"),
       task_times("/timing/tasks/elapsed_s", &Timing::elapsed_s, none, "s", "wall time of the task, without writing"),
+      task_times("/timing/tasks/steps_processor_s", &Timing::steps_processor_s, none, "s",
+                 "processor time of all steps, with what is only measured: nothing if record.norms is none"),
   };
 }
 

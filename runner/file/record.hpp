@@ -138,8 +138,9 @@ struct TaskRecord {
     Cells<float> guess_s, cg_s;         ///< [solve, guess]; cg_s includes the preconditioner's setup
     Cells<float> solve_s, rest_s;       ///< [step] assembly, guesses and solves that advanced the rods; all else
     Cells<double> elapsed_s;            ///< [1]
-    Cells<std::int32_t> solves_timed, solves_missed;  ///< [1, guess]
-    Cells<std::int64_t> source_task;                  ///< [1] of an extended sweep
+    Cells<double> steps_processor_s;    ///< [1] of all steps
+    Cells<std::int32_t> solves_timed, solves_missed, solves_with_network;  ///< [1, guess]
+    Cells<std::int64_t> source_task;                                       ///< [1] of an extended sweep
   } timing;
 
   /// Sizes all columns for this task and fills them with sentinels. Reuses the memory of an earlier task. Can

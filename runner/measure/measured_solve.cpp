@@ -117,6 +117,7 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
   for (const Guess& guess : guesses_) {
     record_.timing.solves_timed(0, guess.column) = 0;
     record_.timing.solves_missed(0, guess.column) = 0;
+    record_.timing.solves_with_network(0, guess.column) = 0;
   }
   if (!spec.output.counts) return;
   const std::size_t tolerances = tolerance_ladder().size();
@@ -165,7 +166,9 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
     const int kept = spec_.solve.kept_steps();
     solvers.renewed = kept == 0 || (at.newton == 0 && at.step % kept == 0);
     if (solvers.renewed) solvers.renew_preconditioners();
-    outcome = count(system, at, row, solvers);
+    solvers.reference = solvers.tight->norm_of(system.rhs());
+    for (Guess& guess : guesses_) guess.guess.prepare(at);
+    if (spec_.output.counts) outcome = count(system, at, row, solvers);
   }
   if (outcome == SolveOutcome::converged && !direct_) outcome = solve_reference(system, solvers);
   delta_lambda = solvers.exact;
@@ -201,28 +204,20 @@ SolveOutcome MeasuredSolve::solve_reference(const LinearSystem& system, RodSolve
       .outcome;
 }
 
-/// Proposes all guesses. Unless nothing is counted, one untimed tight solve per guess and norm follows. Returns `converged` unless a guess has an invalid first residual.
+/// One untimed tight solve per guess and norm. Returns `converged` unless a guess has an invalid first residual.
 SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePosition& at, std::size_t row,
                                   RodSolvers& solvers) {
   const VectorX& b = system.rhs();
   const std::vector<double>& ladder = tolerance_ladder();
   const bool rounding = system.largest_rhs() <= rounding_level;
-  solvers.reference = solvers.tight->norm_of(b);
   const double reference_other = solvers.tight_other ? solvers.tight_other->norm_of(b) : 0;
   SolveOutcome failure = SolveOutcome::not_run;
   for (std::size_t g = 0; g < guesses_.size(); ++g) {
     RodSolvers::PerGuess& own = solvers.guesses[g];
-    guesses_[g].guess.prepare(at);
     own.proposal = guesses_[g].guess.propose(system, at, own.x0);
     if (guesses_[g].is_of_the_user) own.first_x0 = own.x0;
     const int start = own.proposal.start_products();
     const std::size_t column = guesses_[g].column;
-    if (spec_.output.solves) {
-      record_.solves.start_matvecs(row, column) = narrow<std::int16_t>(start);
-      record_.solves.renewed(row, column) =
-          own.proposal.renewed || (spec_.solve.kept_steps() > 0 && solvers.renewed) ? 1 : 0;
-    }
-    if (!spec_.output.counts) continue;
     const auto tight_solve = [&](CgSolver& cg, double reference, std::vector<std::int16_t>& iterations) {
       if (rounding) {
         std::fill(iterations.begin(), iterations.end(), std::int16_t{0});
@@ -274,7 +269,7 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
       const std::size_t g = (k + row + repeat) % guesses_.size();
       RodSolvers::PerGuess& own = solvers.guesses[g];
       const Proposal again = guesses_[g].guess.propose_timed(system, at, own.x0);
-      if (guesses_[g].is_of_the_user && unsteady_.empty() &&
+      if (spec_.output.counts && guesses_[g].is_of_the_user && unsteady_.empty() &&
           (own.x0 != own.first_x0 || again.start_products() != own.proposal.start_products()))
         unsteady_ = spec_.guesses[guesses_[g].column].label;
       own.proposal = again;
@@ -291,13 +286,20 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
 /// Passes the solution that advances the rod to the guesses, and stores the times; those of `accept` are counted.
 void MeasuredSolve::accept(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers,
                            const VectorX& solution) {
+  const bool new_network = solvers.renewed && spec_.solve.preconditioner == Preconditioner::learned;
   for (std::size_t g = 0; g < guesses_.size(); ++g) {
+    RodSolvers::PerGuess& own = solvers.guesses[g];
+    const std::size_t column = guesses_[g].column;
     guesses_[g].guess.accept(system, at, solution);
-    ++record_.timing.solves_timed(0, guesses_[g].column);
-    record_.timing.solves_missed(0, guesses_[g].column) += !is_solved(solvers.guesses[g].advanced.outcome);
+    ++record_.timing.solves_timed(0, column);
+    record_.timing.solves_missed(0, column) += !is_solved(own.advanced.outcome);
+    record_.timing.solves_with_network(0, column) += own.proposal.with_network || new_network;
     if (!spec_.output.solves) continue;
-    record_.timing.guess_s(row, guesses_[g].column) = static_cast<float>(guesses_[g].guess.seconds());
-    record_.timing.cg_s(row, guesses_[g].column) = static_cast<float>(median(solvers.guesses[g].cg_s));
+    record_.solves.start_matvecs(row, column) = narrow<std::int16_t>(own.proposal.start_products());
+    record_.solves.renewed(row, column) =
+        own.proposal.renewed || (spec_.solve.kept_steps() > 0 && solvers.renewed) ? 1 : 0;
+    record_.timing.guess_s(row, column) = static_cast<float>(guesses_[g].guess.seconds());
+    record_.timing.cg_s(row, column) = static_cast<float>(median(own.cg_s));
   }
 }
 

@@ -59,13 +59,16 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
   std::optional<Relaxation> relaxation;
   if (spec.time.until) relaxation.emplace(scene, spec.time.until->rest, spec.time.step_s);
 
+  record.timing.steps_processor_s[0] = 0;
   SimulationLog simulation(task, spec, record, scene, stepper);
   for (int step = 0; step < spec.time.steps; ++step) {
     if (hooks.stop()) return false;
     if (simulation.out_of_time(watch.seconds())) break;
     solve.take_elapsed_s();
     const Stopwatch step_watch;
+    const ProcessorStopwatch processor_watch;
     const StepReport report = stepper.step(*projection);
+    record.timing.steps_processor_s[0] += processor_watch.seconds();
     const auto row = static_cast<std::size_t>(step);
     record.timing.rest_s[row] = static_cast<float>(step_watch.seconds() - solve.take_elapsed_s());
     const SolveEffort effort = solve.take_effort();

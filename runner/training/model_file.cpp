@@ -111,6 +111,8 @@ void write_checkpoint(hid_t file, const Checkpoint& checkpoint) {
               "sum of the step losses in the current epoch");
   hdf5::store(file, "/checkpoint/epoch_s", {1}, std::vector<double>{checkpoint.epoch_seconds}, "s",
               "time spent on the current epoch");
+  hdf5::store(file, "/checkpoint/epoch_processor_s", {1}, std::vector<double>{checkpoint.epoch_processor_seconds}, "s",
+              "processor time of all ranks spent on it");
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,6 +35,7 @@ struct Epoch {
   double rate = 0;             ///< step size of the last step
   double seconds = 0;          ///< wall time
   ValidationRatio::Ratios cg_ratio = ValidationRatio::unmeasured();
+  double processor_seconds = std::numeric_limits<double>::quiet_NaN();  ///< of all ranks
 };
 
 enum class Ending {
@@ -85,6 +87,7 @@ struct Checkpoint {
   Trainer::State optimiser;
   double epoch_loss = 0;     ///< sum of the losses of the current epoch's steps
   double epoch_seconds = 0;  ///< time spent on the current epoch
+  double epoch_processor_seconds = 0;
 };
 
 struct StoredModel {

@@ -28,13 +28,17 @@ inline constexpr std::array<CountPlace, 7> count_places{{
 struct EpochPlace {
   const char *path, *unit, *meaning;
   double Epoch::*member;
+  bool optional = false;  ///< files of earlier versions lack it
 };
-inline constexpr std::array<EpochPlace, 4> epoch_places{{
+inline constexpr std::array<EpochPlace, 5> epoch_places{{
     {"/training/training_loss", "1", "mean over the epoch's examples, while the weights changed",
      &Epoch::training_loss},
     {"/training/validation_loss", "1", "mean over the validation examples, at the end", &Epoch::validation_loss},
     {"/training/rate", "1", "step size of Adam in the last step", &Epoch::rate},
     {"/timing/epoch_s", "s", "wall time of the epoch, its validation included", &Epoch::seconds},
+    {"/timing/epoch_processor_s", "s",
+     "processor time of the epoch: that of rank 0 times the ranks, which do equal work", &Epoch::processor_seconds,
+     true},
 }};
 inline constexpr const char* epoch_ratio_path = "/training/cg_ratio";
 

@@ -78,6 +78,7 @@ std::vector<Epoch> read_epochs(hid_t file) {
   constexpr std::size_t columns = ValidationRatio::tolerance_count;
   std::vector<Epoch> epochs(hdf5::read_all<double>(file, epoch_places.front().path).size());
   for (const EpochPlace& place : epoch_places) {
+    if (place.optional && !hdf5::exists(file, place.path)) continue;
     const auto values = read<double>(file, place.path, {epochs.size()});
     for (std::size_t i = 0; i < epochs.size(); ++i) epochs[i].*place.member = values[i];
   }
@@ -140,6 +141,8 @@ std::optional<Checkpoint> read_checkpoint(hid_t file, std::size_t size) {
   checkpoint.optimiser.step = read<std::int64_t>(file, "/checkpoint/step", {1}).front();
   checkpoint.epoch_loss = read<double>(file, "/checkpoint/epoch_loss", {1}).front();
   checkpoint.epoch_seconds = read<double>(file, "/checkpoint/epoch_s", {1}).front();
+  if (const char* path = "/checkpoint/epoch_processor_s"; hdf5::exists(file, path))
+    checkpoint.epoch_processor_seconds = read<double>(file, path, {1}).front();
   return checkpoint;
 }
 

@@ -54,14 +54,16 @@ void Training::restore(const ModelCard& card, const Model& kept, const Checkpoin
   card_.best_epoch = card.best_epoch;
   epoch_loss_ = checkpoint.epoch_loss;
   epoch_seconds_ = checkpoint.epoch_seconds;
+  epoch_processor_seconds_ = checkpoint.epoch_processor_seconds;
 }
 
 Checkpoint Training::checkpoint() const {
-  return {model_->net.parameters().values(), trainer_.state(), epoch_loss_, epoch_seconds_};
+  return {model_->net.parameters().values(), trainer_.state(), epoch_loss_, epoch_seconds_, epoch_processor_seconds_};
 }
 
 bool Training::step(bool stop) {
   const Stopwatch watch;
+  const ProcessorStopwatch processor_watch(CLOCK_PROCESS_CPUTIME_ID);  // with its threads
   const bool stops = exchange_.gather([&](const std::vector<Trainer::Shard>& own) { trainer_.compute(own); }, stop);
   const double loss = trainer_.update(exchange_.shards());
   epoch_loss_ += loss;
@@ -71,8 +73,11 @@ bool Training::step(bool stop) {
     end_epoch();
   }
   epoch_seconds_ += watch.seconds();
-  if (at_epoch_begin() && card_.ending != Ending::diverged)
+  epoch_processor_seconds_ += exchange_.ranks() * processor_watch.seconds();
+  if (at_epoch_begin() && card_.ending != Ending::diverged) {
     card_.epochs.back().seconds = std::exchange(epoch_seconds_, 0);
+    card_.epochs.back().processor_seconds = std::exchange(epoch_processor_seconds_, 0);
+  }
   return stops;
 }
 

@@ -55,7 +55,7 @@ class Training {
   ShardExchange exchange_;
   ValidationRatio ratio_;
   ModelCard card_;
-  double epoch_loss_ = 0, epoch_seconds_ = 0;
+  double epoch_loss_ = 0, epoch_seconds_ = 0, epoch_processor_seconds_ = 0;
 };
 
 }  // namespace rodsweep

@@ -17,6 +17,7 @@ struct Proposal {
   int products = 0;                   ///< products with A in the guess itself
   const VectorX* residual = nullptr;  ///< b - A x0, if known; valid until the rod's next proposal
   bool renewed = false;               ///< the guess renewed data that later systems reuse
+  bool with_network = false;          ///< a network ran
 
   /// The start of CG, and the products with A before its first iteration.
   CgStart start() const { return {nonzero, residual}; }

@@ -263,6 +263,37 @@ TEST_CASE("every guess takes the same iterations, whatever is repeated, recorded
   }
 }
 
+TEST_CASE("every guess moves the rods alike where nothing is counted, and says for how many solves a network ran") {
+  const Files files;
+  Samples guesses = guesses_alone(files);
+  for (const char* model : {"/bending-paper.h5", "/rods.h5"})
+    for (Json& outer : around(of("copingnet", {{"model", PRETRAINED + std::string(model)}})))
+      guesses.push_back(std::move(outer));
+  const Json closed{{"evaluation", "closed_loop"}, {"solve", {{"method", "cg"}}}};
+  Json timed = closed;
+  timed["record"] = {{"norms", "none"}, {"solves", "summary"}};
+  const Plan plan = plan_of(files.job(guesses, closed)), plan_timed = plan_of(files.job(guesses, timed));
+  for (std::int64_t index = 0; index < plan.size(); ++index) {
+    const std::string label = plan.guess_labels()[static_cast<std::size_t>(index)];
+    CAPTURE(label);
+    const TaskRecord counted = record_of(plan, index), alone = record_of(plan_timed, index);
+    CHECK(alone.steps.products == counted.steps.products);
+    CHECK(alone.steps.kinetic_energy_j == counted.steps.kinetic_energy_j);
+    CHECK(alone.timing.steps_processor_s[0] > 0);
+    CHECK(alone.timing.steps_processor_s[0] < counted.timing.elapsed_s[0] + alone.timing.elapsed_s[0]);
+    const auto own = static_cast<std::size_t>(index);
+    const auto solves = alone.timing.solves_timed(0, own), with = alone.timing.solves_with_network(0, own);
+    CHECK(with == counted.timing.solves_with_network(0, own));
+    const auto has = [&](const char* word) { return label.find(word) != std::string::npos; };
+    if (!has("copingnet"))
+      CHECK(with == 0);
+    else if ((has("lag") && !has("ritz")) || has("first"))  // two steps a prediction, or one of two Newton iterations
+      CHECK((with > 0 && with < solves));
+    else
+      CHECK(with == solves);
+  }
+}
+
 TEST_CASE("every guess that uses another passes on each system with its solution, and totals their sum") {
   const Files files;
   Samples guesses{Json("zero"), watching};

@@ -75,6 +75,7 @@ class Learning(TrainingCase):
             self.assertEqual(np.isnan(ratios[:, 0]).tolist(), [True, False, True])
             self.assertTrue((file["validation/cg_ratio"][:] > 0).all())
             self.assertEqual(file["model/weights/encode.weight"].shape[0], 16)
+            self.assertTrue((file["timing/epoch_processor_s"][:] > 0).all())
             for path in ("training/rate", "timing/epoch_s", "validation/base_cg_ratio"):
                 self.assertTrue(file[path].attrs["meaning"])
         told = json.loads(rodsweep(0, "info", "results/told.h5", "--json").stdout)

@@ -33,7 +33,8 @@ ModelCard some_card() {
   card.training_examples = 12800;
   card.validation_examples = 5000;
   card.planned_epochs = 5;
-  card.epochs = {{0.5, 0.6, 1e-3, 2.5, ValidationRatio::unmeasured()}, {0.4, 0.55, 2e-3, 2.25, {0.1, 0.2, 0.3, 0.4}}};
+  card.epochs = {{0.5, 0.6, 1e-3, 2.5, ValidationRatio::unmeasured(), 4.75},
+                 {0.4, 0.55, 2e-3, 2.25, {0.1, 0.2, 0.3, 0.4}, 4.5}};
   card.best_epoch = 2;
   card.ending = Ending::early;
   card.message = "enough";
@@ -82,7 +83,9 @@ void check_same(const ModelCard& a, const ModelCard& b) {
     return x.scene == y.scene && x.cg_ratio == y.cg_ratio && x.base_cg_ratio == y.base_cg_ratio;
   };
   CHECK(std::equal(a.scenes.begin(), a.scenes.end(), b.scenes.begin(), b.scenes.end(), same_scene));
-  const auto epoch = [](const Epoch& e) { return std::tie(e.training_loss, e.validation_loss, e.rate, e.seconds); };
+  const auto epoch = [](const Epoch& e) {
+    return std::tie(e.training_loss, e.validation_loss, e.rate, e.seconds, e.processor_seconds);
+  };
   REQUIRE(a.epochs.size() == b.epochs.size());
   for (std::size_t i = 0; i < a.epochs.size(); ++i) {
     CHECK((epoch(a.epochs[i]) == epoch(b.epochs[i])));
@@ -157,6 +160,7 @@ TEST_CASE("a model of twenty thousand parameters is small, and a checkpoint is r
                           some_model(settings, 4)->net.parameters().values()};
   checkpoint.epoch_loss = 0.1;
   checkpoint.epoch_seconds = 0.2;
+  checkpoint.epoch_processor_seconds = 0.3;
   const StoredModel read = read_training(save(folder / "large.h5", *model, card, checkpoint));
   REQUIRE(read.checkpoint);
   CHECK(read.checkpoint->weights == checkpoint.weights);
@@ -165,6 +169,7 @@ TEST_CASE("a model of twenty thousand parameters is small, and a checkpoint is r
   CHECK(read.checkpoint->optimiser.square == checkpoint.optimiser.square);
   CHECK(read.checkpoint->epoch_loss == 0.1);
   CHECK(read.checkpoint->epoch_seconds == 0.2);
+  CHECK(read.checkpoint->epoch_processor_seconds == 0.3);
   CHECK(read.card.ending == Ending::none);
 }
 
