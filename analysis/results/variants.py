@@ -137,8 +137,9 @@ NOT_ON_HELICES = {"size_16", "size_64", "steps_2", "steps_8", "hidden_layers_3",
 
 
 def of_the_score(name, data):
-    return Family(f"train_{name}", f"score_{data}", {"data": f"every_step_of_{data}"},
-                  {name.replace("_", "-") + suffix: {"seed": seed} for suffix, seed in SEEDS.items()}, f"{data}_data")
+    variants = {name.replace("_", "-") + suffix: {"seed": seed, "data": f"every_step_of_{data}"}
+                for suffix, seed in SEEDS.items()}
+    return Family(f"train_{name}", f"score_{data}", {}, variants, f"{data}_data")
 
 
 FAMILIES = {
