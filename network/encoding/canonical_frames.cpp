@@ -169,10 +169,10 @@ void CanonicalFrames::set_axis(Tree& tree) {
 }
 
 ScaledSystem<float> canonical_system(const SystemPattern& pattern, const CanonicalFrames& frames, const BlockMatrix& a,
-                                     const VectorX& residual, const VectorX& error, double solution_energy) {
+                                     const VectorX& residual, const VectorX& error, double unit_energy) {
   const double inverse_rho = frames.rho() > 0 ? 1 / frames.rho() : 0;
   return scaled_system_of(
-      pattern, a, frames.rho(), error.dot(residual), solution_energy,
+      pattern, a, frames.rho(), error.dot(residual), unit_energy,
       [&](int place, float* out) {
         const Lane8 r = inverse_rho * frames.scale(place) *
                         frames.frame(place)(load6(residual.data() + 6 * pattern.joint[at(place)]));

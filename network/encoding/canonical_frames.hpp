@@ -83,6 +83,6 @@ class CanonicalFrames {
 
 /// scaled_system() in these frames.
 ScaledSystem<float> canonical_system(const SystemPattern& pattern, const CanonicalFrames& frames, const BlockMatrix& a,
-                                     const VectorX& residual, const VectorX& error, double solution_energy);
+                                     const VectorX& residual, const VectorX& error, double unit_energy);
 
 }  // namespace rodsweep

@@ -58,14 +58,14 @@ double correction_scale(const BlockMatrix& a, const VectorX& residual, VectorX& 
 }
 
 ScaledSystem<float> scaled_system(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
-                                  const VectorX& error, double solution_energy) {
+                                  const VectorX& error, double unit_energy) {
   VectorX s(a.unknowns());
   inverse_root_diagonal(a, s);
   const VectorX scaled = s.cwiseProduct(residual);
   const double rho2 = scaled.squaredNorm() / a.unknowns(), inverse_rho = rho2 > 0 ? 1 / std::sqrt(rho2) : 0;
   const auto scale = [&](int place) -> const double* { return &s[6 * pattern.joint[at(place)]]; };
   return scaled_system_of(
-      pattern, a, std::sqrt(rho2), error.dot(residual), solution_energy,
+      pattern, a, std::sqrt(rho2), error.dot(residual), unit_energy,
       [&](int place, float* out) {
         Eigen::Map<Eigen::Matrix<float, 6, 1>> to(out);
         to = (scaled.segment<6>(6 * pattern.joint[at(place)]) * inverse_rho).cast<float>();
@@ -103,7 +103,7 @@ ScaledSystem<T> side_by_side(const std::vector<const ScaledSystem<float>*>& syst
     coupling += one->coupling.cols();
     out.first_place.push_back(static_cast<int>(place));
     out.base_energy.insert(out.base_energy.end(), one->base_energy.begin(), one->base_energy.end());
-    out.solution_energy.insert(out.solution_energy.end(), one->solution_energy.begin(), one->solution_energy.end());
+    out.unit_energy.insert(out.unit_energy.end(), one->unit_energy.begin(), one->unit_energy.end());
   }
   return out;
 }

@@ -40,8 +40,8 @@ struct ScaledSystem {
   std::vector<SystemPattern::Coupling> couplings;  ///< `block` counts columns of `coupling` here
   Tensor<T> residual;                              ///< [6, places] r^
   std::vector<int> first_place;                    ///< of each system, and the end
-  std::vector<double> base_energy,
-      solution_energy;  ///< per system: (x - x_base)^T A (x - x_base) and x^T A x, over rho^2
+  std::vector<double> base_energy,                 ///< per system: (x - x_base)^T A (x - x_base), over rho^2
+      unit_energy;                                 ///< of losses: x^T A x, or the base's if that is greater
 
   int systems() const { return static_cast<int>(base_energy.size()); }
 };
@@ -49,16 +49,15 @@ struct ScaledSystem {
 /// Sets rho S per unknown, in the order of joints: d = scale * d^; returns rho. Both are zero if the residual is.
 double correction_scale(const BlockMatrix& a, const VectorX& residual, VectorX& scale);
 
-/// `error` is x - x_base, `solution_energy` is x^T A x, with A x = b.
+/// `error` is x - x_base, with A x = b.
 ScaledSystem<float> scaled_system(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
-                                  const VectorX& error, double solution_energy);
+                                  const VectorX& error, double unit_energy);
 
 /// The same in other frames and scales: put_residual(place, six floats) writes r^ of a place; put_block(block, row,
 /// column, 36 floats) writes the block of A^ that corresponds to `block` of A. `rho` as in correction_scale().
 template <class PutResidual, class PutBlock>
 ScaledSystem<float> scaled_system_of(const SystemPattern& pattern, const BlockMatrix& a, double rho, double base_energy,
-                                     double solution_energy, const PutResidual& put_residual,
-                                     const PutBlock& put_block) {
+                                     double unit_energy, const PutResidual& put_residual, const PutBlock& put_block) {
   const auto block_at = [&](int index) -> const Block6& { return a.blocks[static_cast<std::size_t>(index)]; };
   const auto places = static_cast<int>(pattern.joint.size());
   ScaledSystem<float> out;
@@ -78,7 +77,7 @@ ScaledSystem<float> scaled_system_of(const SystemPattern& pattern, const BlockMa
   out.first_place = {0, places};
   const double inverse_rho = rho > 0 ? 1 / rho : 0;
   out.base_energy = {base_energy * inverse_rho * inverse_rho};
-  out.solution_energy = {solution_energy * inverse_rho * inverse_rho};
+  out.unit_energy = {unit_energy * inverse_rho * inverse_rho};
   return out;
 }
 

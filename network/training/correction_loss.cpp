@@ -58,9 +58,9 @@ double CorrectionLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>
   double loss = 0;
   std::vector<T> slope(systems);
   for (std::size_t s = 0; s < systems; ++s) {
-    const double ratio = std::max(energy[s] / a.solution_energy[s], smallest_ratio);
+    const double ratio = std::max(energy[s] / a.unit_energy[s], smallest_ratio);
     loss += std::sqrt(ratio);
-    slope[s] = ratio > smallest_ratio ? static_cast<T>(1 / (std::sqrt(ratio) * a.solution_energy[s])) : T(0);
+    slope[s] = ratio > smallest_ratio ? static_cast<T>(1 / (std::sqrt(ratio) * a.unit_energy[s])) : T(0);
   }
   if (!d_factors) return loss;
   Tensor<T> dx = Tensor<T>::Zero(6, r_.cols());  // dE/dx = -2 r

@@ -3,7 +3,7 @@
 //
 // With F the matrix of network/processor/coupled_passes.hpp and r_0 = r^, E_0 = (x - x_base)^T A^ (x - x_base),
 //   z_i = F r_i,  p_i = z_i + (r_i.z_i / r_i-1.z_i-1) p_i-1,  a_i = r_i.z_i / p_i.A^ p_i,  r_i+1 = r_i - a_i A^ p_i
-//   E_i+1 = E_i - a_i r_i.z_i,   L = sqrt(E_k / x^T A x)
+//   E_i+1 = E_i - a_i r_i.z_i,   L = sqrt(E_k / max(x^T A x, E_0))
 // The error after one correction predicts little about the next: it can be small although F is a bad preconditioner.
 // E_k is the minimum over all polynomials in F A^. Therefore, as in energy_loss.hpp, the gradient is exact with a_i and
 // the coefficients of p_i-1 held fixed.

@@ -44,14 +44,14 @@ double EnergyLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>& d,
   if (gradient) gradient->resize(6, d.cols());
   for (int s = 0; s < a.systems(); ++s) {
     const auto i = static_cast<std::size_t>(s);
-    const double ratio = std::max(energy_[i] / a.solution_energy[i], smallest_energy_ratio);
+    const double ratio = std::max(energy_[i] / a.unit_energy[i], smallest_energy_ratio);
     loss += std::sqrt(ratio);
     if (!gradient) continue;
     // dE/dx0 = -2 v, v = P_k(A^) r_k, x0 = c d:  dE/dd = -2 (c v + (d.v) dc/dd),  dc/dd = (r^ - 2 c A^ d) / d.A^ d
     const auto ds = part(d, a.first_place, s);
     const auto v = part(v_, a.first_place, s);
     const double c = length[i], slope = best_length_ && curvature[i] > 0 ? dot(ds, v) / curvature[i] : 0;
-    const double dloss = -1 / (std::sqrt(ratio) * a.solution_energy[i]);  // dL/dE * (-2)
+    const double dloss = -1 / (std::sqrt(ratio) * a.unit_energy[i]);  // dL/dE * (-2)
     auto g = part(*gradient, a.first_place, s);
     g = static_cast<T>(dloss * c) * v + static_cast<T>(dloss * slope) * part(a.residual, a.first_place, s) -
         static_cast<T>(2 * dloss * slope * c) * part(ad_, a.first_place, s);

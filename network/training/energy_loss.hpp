@@ -1,9 +1,9 @@
 // The error of a guess in the norm that CG minimises.
 //
 // The network's d^ is the direction of a correction. Its length is the best one, c = d^.r^ / d^.A^ d^, or c = 1 without
-// `best_length`. The loss of a system is the energy norm of the remaining error, relative to that of the solution (the
-// error of the zero guess). With the best length
-//   L = sqrt(E / x^T A x),   E = min over c of |x - x_base - c d|_A^2 = E_base - (d^.r^)^2 / d^.A^ d^
+// `best_length`. The loss of a system is the energy norm of the remaining error, relative to that of the zero guess, or of
+// the base if that is worse. With the best length
+//   L = sqrt(E / max(x^T A x, E_base)),   E = min over c of |x - x_base - c d|_A^2 = E_base - (d^.r^)^2 / d^.A^ d^
 // In the loop, E is taken after k further steps of Jacobi-preconditioned CG. CG multiplies the error by the polynomial
 // in A^ that minimises E. By the envelope theorem the gradient is exact with the polynomial held fixed: with
 // e_k = P_k(A^) e_0,  dE_k/de_0 = 2 P_k(A^) A^ e_k.

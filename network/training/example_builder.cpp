@@ -1,5 +1,6 @@
 #include "network/training/example_builder.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <numeric>
 
@@ -43,9 +44,10 @@ Tensor<float> by_place(const Topology& topology, const VectorX& values) {
 void put_system(const LinearSystem& system, const StoredSystem& stored, RodExamples& of, Example& out) {
   const SystemPattern& pattern = of.encoder.pattern();
   const VectorX error = stored.solution - of.base;
-  const double solution_energy = stored.solution.dot(system.rhs());
+  // A base that is far worse than zero, as in solves that change nothing, would drown all other examples.
+  const double unit_energy = std::max(stored.solution.dot(system.rhs()), error.dot(of.residual));
   if (const SystemEncoding* scaled = of.encoder.system()) {
-    out.system = canonical_system(pattern, scaled->frames(), system.matrix(), of.residual, error, solution_energy);
+    out.system = canonical_system(pattern, scaled->frames(), system.matrix(), of.residual, error, unit_energy);
     out.edge_target.resize(6, out.system.residual.cols());
     for (int place = 0; place < static_cast<int>(out.edge_target.cols()); ++place) {
       const int joint = pattern.joint[static_cast<std::size_t>(place)];
@@ -54,7 +56,7 @@ void put_system(const LinearSystem& system, const StoredSystem& stored, RodExamp
     }
     return;
   }
-  out.system = scaled_system(pattern, system.matrix(), of.residual, error, solution_energy);
+  out.system = scaled_system(pattern, system.matrix(), of.residual, error, unit_energy);
   correction_scale(system.matrix(), of.residual, of.scale);
   out.unit = by_place(*out.topology, of.scale.cwiseInverse());
   out.edge_target = by_place(*out.topology, error);

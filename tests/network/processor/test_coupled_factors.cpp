@@ -151,7 +151,7 @@ TEST_CASE("the gradients of factors of all couplings are those of central differ
 TEST_CASE("the gradient of what several corrections leave is that of central differences") {
   System a = some_systems();
   a.residual = random_matrix(6, static_cast<int>(a.diagonal.cols()), 7);
-  a.base_energy = a.solution_energy = {1e4, 2e4, 3e4};
+  a.base_energy = a.unit_energy = {1e4, 2e4, 3e4};
   Net<double> net(3);
   CorrectionLoss<double> loss(3);
   const auto value = [&] {
@@ -170,7 +170,7 @@ TEST_CASE("enough corrections leave nothing, and of exact factors one") {
   const ScaledSystem<float> one = system_of(random_rod(chain(4), {0}, 1));
   System a = side_by_side<double>({&one});
   const double energy = a.residual.reshaped().dot(dense(a).ldlt().solve(a.residual.reshaped()));
-  a.base_energy = a.solution_energy = {energy};
+  a.base_energy = a.unit_energy = {energy};
   Parameters<double> weights;
   WeightSource source(3);
   const CoupledFactors<double> untrained(weights, 4, source);
