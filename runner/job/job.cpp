@@ -27,12 +27,14 @@ void check_guesses(const Job& job, const SweepSpace& space) {
     if (guesses.empty()) return;
     throw job_error(job.path, "guesses", "only solve.method \"cg\" uses initial guesses; remove this key");
   }
+  if (job.values["record"].value("norms", "") == "none") return;  // no ratios
   for (const auto& guess : guesses) {
     if (guess.contains("zero")) return;
   }
-  throw job_error(job.path, "guesses",
-                  "solve.method \"cg\" needs \"zero\" in this list, the denominator of every ratio; for example "
-                  "[\"zero\", \"previous\", \"quadratic\"]");
+  throw job_error(
+      job.path, "guesses",
+      "solve.method \"cg\" needs \"zero\" in this list, the denominator of every ratio, unless record.norms is "
+      "\"none\"; for example [\"zero\", \"previous\", \"quadratic\"]");
 }
 
 void check_samples(const Job& job, const SweepSpace& space) {

@@ -273,6 +273,7 @@ TEST_CASE("every guess moves the rods alike where nothing is counted, and says f
   Json timed = closed;
   timed["record"] = {{"norms", "none"}, {"solves", "summary"}};
   const Plan plan = plan_of(files.job(guesses, closed)), plan_timed = plan_of(files.job(guesses, timed));
+  CHECK(plan_of(files.job({"previous"}, timed)).size() == 1);  // without ratios, and so without "zero"
   for (std::int64_t index = 0; index < plan.size(); ++index) {
     const std::string label = plan.guess_labels()[static_cast<std::size_t>(index)];
     CAPTURE(label);
