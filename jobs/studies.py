@@ -102,17 +102,6 @@ def ablation(scene):
             summary(step, "--by time.step_s"), origins(study, step)]
 
 
-def score(*scenes):
-    """Tuning draws choose settings, test draws measure them. The chosen settings become jobs of jobs/score at the end."""
-    tuning, test = ([f"score/{scene}_{draws}" for scene in scenes] for draws in ("tuning", "test"))
-    return [*(step for of, measured in zip(tuning, test) for step in (
-                run_file(f"jobs/{of}.json", f"results/{of}.h5"), f"analysis/score.py --jobs results/{of}.h5",
-                run_file(f"results/{measured}.json", f"results/{measured}.h5"))),
-            to("score", show("score", results(tuning))),
-            "cp results/score/*_test.json jobs/score",    # as deep as results/score, so its paths stay right
-            origins(*tuning, *test)]
-
-
 def film(job, task, name, colour, *words):
     """MP4 and GIF. Existing films are kept."""
     for kind in ("mp4", "gif --every 2 --rate 12"):
@@ -176,8 +165,12 @@ STUDIES = {
         f"rm {OUT}/knot-paper-best-and-*-loss.png"]),
 }
 OTHERS = {
-    "score": Study("the cheapest way to an error of the motion, with and without guesses, by scene", "2 hours",
-                   score("bending_rod", "helix", "tree", "forest", "net", "lattice", "falling_rods", "knot")),
+    "score": Study("the cheapest way to an error of the motion, by kind and scene (docs/score.md)", "10 hours", [
+        "analysis/score.py --errors", "analysis/score.py --times", to("score", show("score"))]),
+    "score_networks": Study("the networks of the score: trains three of each", "3 hours", [
+        *(variants(family) for family in ("score_rods", "score_rods_large", "score_lattices")),
+        "mkdir -p network/pretrained/score",
+        "cp results/score_rods/rods*.h5 results/score_lattices/lattices*.h5 network/pretrained/score"]),
     "ablation": Study("what the network of Shao et al. owes to each of its settings: trains some 70 variants", "1 hour", [
         *ablation("bending"), *ablation("helix"), *run("ablation_long_term"),
         to("ablation_long_term", draw("long_term", "ablation_long_term", "--log-time")), origins("ablation_long_term")]),
@@ -214,13 +207,13 @@ def outputs(*studies):
 
 
 COMPARED = [file for file in outputs(*STUDIES.values()) if not file.endswith("_data.h5")]
-ARCHIVED = " ".join([*outputs(*STUDIES.values(), OTHERS["score"]), "CITATION.cff LICENSE jobs network/pretrained", OUT])
+ARCHIVED = " ".join([*outputs(*STUDIES.values()), "CITATION.cff LICENSE jobs network/pretrained", OUT])
 OTHERS |= {
     "report": Study("results/report.html: the demo and the studies that were run, as a page to read", "seconds", [
         f"analysis/report.py $(ls results/demo.h5 {' '.join(COMPARED)} results/pictures.h5 2>/dev/null) --skip "
         "--title 'What the sweeps found' -o results/report.html --force"]),
-    "archive": Study("results/archive.tar: results of score and of all studies, models, tables, with checksums", "minutes", [
-        f"for file in {ARCHIVED}; do [ -e $file ] || {{ echo \"There is no $file: run 'jobs/studies.py all score' first.\"; "
+    "archive": Study("results/archive.tar: results of all studies, models, tables, with checksums", "minutes", [
+        f"for file in {ARCHIVED}; do [ -e $file ] || {{ echo \"There is no $file: run 'jobs/studies.py all' first.\"; "
         "exit 1; }; done",
         f"find {ARCHIVED} -type f -print0 | sort -z | xargs -0 sha256sum >results/SHA256SUMS",
         "tar --create --file results/archive.tar --transform \"s,^,rodsweep-$(git rev-parse --short HEAD)/,\" "
@@ -263,7 +256,7 @@ def main():
     if options.dry_run or not steps:
         print("\n".join(steps) or overview())
         return
-    os.makedirs(os.path.join(ROOT if options.results == "results" else "", options.results, "score"), exist_ok=True)
+    os.makedirs(os.path.join(ROOT if options.results == "results" else "", options.results), exist_ok=True)
     os.chdir(ROOT)
     if not os.access(f"{options.build}/rodsweep", os.X_OK):
         sys.exit(f"studies.py: there is no {options.build}/rodsweep: run `make build`")

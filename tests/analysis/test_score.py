@@ -1,202 +1,270 @@
-"""score.py: settings are chosen on one file and measured on another, and its numbers are those of the files' rows."""
+"""The score: its statistics cover what they say, its settings are of their kinds, its search finds the cheapest, and its
+numbers are those of the files. A small scene goes through all of it; the grid is cut to a few values for that."""
 
+import itertools
 import json
 import os
 import shutil
-import subprocess
 import tempfile
 import unittest
+from unittest import mock
 
-from running import Folder, run
 import numpy as np
-from rodsweep.reading import score
-from rodsweep.reading.accuracy import Way, way_of
+from running import run
+
+import rodsweep
+from rodsweep.reading import accuracy
+from rodsweep.reading.errors import SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
+from rodsweep.scoring import answers, scenes, search, settings, sitting, verdicts
+from rodsweep.scoring.runs import Runs
+from rodsweep.scoring.settings import KINDS, OF_CG, OWN, Setting, Step
 
-MODEL = os.path.join(os.environ["SOURCE_DIR"], "network", "pretrained", "rods.h5")
-
-
-def runs(error, time_s):
-    draws = np.arange(5)
-    return score.Runs(draws, np.full(5, error), np.asarray(time_s) * np.ones(5), np.ones(5))
-
-
-SEEDS = {"rods-2": "rods", "rods-3": "rods"}
-
-
-def setting(guess="", preconditioner="jacobi", step_s=0.01, method="cg"):
-    way = Way(method, 1, 0, 1e-2, preconditioner, guess) if guess else Way(method, 1)
-    return score.Setting(way, "bdf2", step_s, seeds=SEEDS)
-
-
-class Choice(unittest.TestCase):
-    FOUND = {setting(method="direct"): runs(0.005, 7), setting("zero"): runs(0.05, 5),
-             setting("previous", "learned rods"): runs(0.05, 6),
-             setting("zero", "block_icc"): runs(0.005, 4), setting("previous"): runs(0.05, 4.5),
-             setting("copingnet rods"): runs(0.05, 2), setting("previous", "icc"): runs(np.inf, 0.1),
-             setting("copingnet rods", step_s=0.005): runs(0.008, [1, 2, 9, 9, 9])}
-
-    def test_each_answer_is_the_fastest_of_its_kind_that_reaches_the_error(self):
-        best = score.chosen(self.FOUND)
-        self.assertEqual({answer: best.get((0.1, answer)) for answer in score.ANSWERS}, {
-            "cheapest of all": setting("copingnet rods"), "direct solve": setting(method="direct"),
-            "Gauss-Seidel": None, "your guess": None,
-            "CG from zero": setting("zero", "block_icc"),
-            "CG, classical guess": setting("previous"), "CG, learned guess": setting("copingnet rods"),
-            "CG, learned preconditioner": setting("previous", "learned rods"),
-            "CG, Jacobi": setting("copingnet rods")})
-        self.assertEqual(best[0.01, "cheapest of all"], setting("zero", "block_icc"))
-        self.assertEqual(best[0.01, "CG, Jacobi"], setting("copingnet rods", step_s=0.005))
-        self.assertNotIn((0.01, "CG, classical guess"), best)
-        self.assertFalse([level for level, _ in best if level < 0.005])
-
-    def test_cg_that_reaches_an_error_by_chance_does_not_count(self):
-        found = {setting(method="direct"): runs(0.2, 3), setting("zero"): runs(0.05, 2),
-                 setting(method="direct", step_s=0.005): runs(0.05, 6), setting("zero", step_s=0.005): runs(0.05, 4)}
-        best = score.chosen(found)
-        self.assertEqual(best[0.1, "CG from zero"], setting("zero", step_s=0.005))
-        self.assertEqual(best[0.1, "direct solve"], setting(method="direct", step_s=0.005))
-
-    def test_a_quotient_is_the_median_over_draws_that_both_have(self):
-        slow = score.Runs(np.arange(1, 7), np.zeros(6), 2.0 * np.arange(1, 7), np.ones(6))
-        base = score.Runs(np.arange(6), np.zeros(6), np.arange(6) + 1.0, np.ones(6))
-        factor = score.factor([slow], base)
-        self.assertAlmostEqual(float(factor.value), np.median(2 * np.arange(1, 6) / np.arange(2, 7)))
-        self.assertEqual(int(factor.count), 5)
-
-    def test_learned_settings_have_the_median_of_their_trainings_and_the_interval_of_all(self):
-        learned, base = setting("copingnet rods 5 lag 8"), runs(0, [1, 1, 1, 1, 1])
-        found = {setting(f"copingnet rods{seed} 5 lag 8"): runs(0, [time] * 5)
-                 for seed, time in (("", 2), ("-2", 5), ("-3", 4))}
-        found |= {setting("copingnet rods-large 5 lag 8"): base, setting("copingnet rods-2 5 lag 9"): base,
-                  setting("copingnet rods-32 5 lag 8"): base}
-        factor = score.factor(score.trainings(learned, found), base)
-        self.assertEqual([float(factor.value), float(factor.low), float(factor.high)], [4, 2, 5])
-
-    def test_a_setting_is_chosen_by_one_training_and_shown_with_all(self):
-        found = {setting(method="direct"): runs(0.005, 7), setting("zero"): runs(0.05, 5)}
-        for seed, time in (("", 4), ("-2", 3), ("-3", 9)):
-            found[setting("zero", f"learned rods{seed}")] = runs(0.05, time)
-        best = score.chosen(found)[0.1, "CG, learned preconditioner"]
-        self.assertEqual(best, setting("zero", "learned rods"))
-        self.assertEqual(len(score.trainings(best, found)), 3)
-
-    def test_seeds_are_the_models_in_the_folder_seeds_beside_one_of_the_job(self):
-        names = ("rods", "rods-32", "seeds/rods-2", "seeds/net-2")
-        guesses = [{"copingnet": {"model": f"models/{name}.h5"}} for name in names]
-        solve = {"zip": [{"learned_preconditioner": {"model": "models/seeds/rods-3.h5"}}]}
-        self.assertEqual(score.seeds_in({"guesses": guesses, "solve": solve}), SEEDS)
+PRETRAINED = os.path.join(os.environ["SOURCE_DIR"], "network", "pretrained")
+CG = (settings.ZERO, settings.CALL)
+FEW = {"INTEGRATORS": ("bdf2",), "STEPS_S": (0.02, 0.01), "NEWTON": (1,), "TOLERANCES": (1e-2, 1e-3), "LAGS": (0, 8),
+       "SWEEPS": (1,), "STOPS": (1,)}
+SCENE = {"name": "rod", "kind": "sweep", "seed": 1, "samples": 5, "evaluation": "closed_loop",
+         "scene": {"type": "bending_rod", "segments": 6, "length_m": {"uniform": [1, 2]}, "radius_m": 0.05,
+                   "density_kg_m3": 1000, "youngs_modulus_pa": 1e7, "torsion_modulus_pa": 1e6, "damping_per_s": 2},
+         "time": {"duration_s": 0.32, "step_s": {"grid": [0.0025, 0.00125]}, "integrator": "bdf2", "balance": True,
+                  "newton_iterations": 20},
+         "solve": {"method": "direct"}, "record": {"solves": "summary", "norms": "none", "trajectory_every": 32}}
 
 
-class Ways(Folder):
-    def test_a_way_has_what_applies_to_its_method(self):
-        file = self.open(scenes=("helix",), guesses=("zero", "previous"), samples=1, newton=2, closed_loop=True, grid={
-            "solve.method": ["direct", "xpbd", "cg"], "solve.iterations": [5],
-            "solve.forcing": ["fixed", "eisenstat_walker"]})
-        ways = dict.fromkeys(way_of(file, task) for task in range(file.task_count))
-        self.assertEqual(list(ways), [
-            Way("direct", 2), Way("xpbd", iterations=5),
-            *(Way("cg", 2, 0, 1e-2, "jacobi", guess, forcing) for forcing in (False, True) for guess in file.guesses)])
-        texts = [way.text() for way in ways]
-        self.assertEqual(texts[:3] + texts[-1:], [
-            "direct, Newton 2", "xpbd 5", "CG jacobi from zero to 1e-2, Newton 2",
-            "CG jacobi from previous to 1e-2 with forcing terms, Newton 2"])
+def planted(folder):
+    """A root with one small scene, and shipped models as its networks."""
+    for part in ("jobs/score", "network/pretrained/score"):
+        os.makedirs(os.path.join(folder, part))
+    with open(os.path.join(folder, "jobs/score/rod_draws.json"), "w", encoding="utf-8") as file:
+        json.dump(SCENE, file)
+    for name, end in itertools.product(("rods", "rods-large"), ("", "-2", "-3")):
+        shutil.copy(os.path.join(PRETRAINED, f"{name}.h5"), os.path.join(folder, f"network/pretrained/score/{name}{end}.h5"))
+    shutil.copy(os.path.join(PRETRAINED, "bending-paper-best.h5"), os.path.join(folder, "network/pretrained"))
 
 
-class Files(unittest.TestCase):
+class Statistics(unittest.TestCase):
+    def test_a_bound_is_above_the_median_as_often_as_it_says(self):
+        generator = np.random.default_rng(1)
+        for draws in (4, 5, 8, 40):
+            found = [verdicts.upper_bound(of) >= 0 for of in generator.normal(size=(4000, draws))]
+            self.assertGreater(np.mean(found), verdicts.BOUND - 0.015, draws)
+            self.assertEqual(verdicts.lower_bound(np.arange(draws)), draws - 1 - verdicts.upper_bound(np.arange(draws)))
+        self.assertEqual(verdicts.upper_bound([1, 2, 3]), np.inf)
+        self.assertEqual(verdicts.lower_bound([3, 1, 2]), 1)
+
+    def test_what_is_admitted_and_what_a_few_draws_leave_open(self):
+        errors = np.full(40, 0.008)
+        for failed, counts in ((0, True), (2, True), (3, False)):
+            self.assertEqual(verdicts.admitted(np.append(errors[failed:], [np.inf] * failed), 0.01), counts)
+        few = np.append(errors[:23], [0.02] * 17)    # the 25th smallest bounds
+        self.assertEqual([verdicts.admitted(few, 0.01), verdicts.kept(few, 0.01)], [False, True])
+        self.assertFalse(verdicts.kept(np.append(errors[3:], [np.inf] * 3), 0.01))
+        for errors, stays in (([0.02] * 7 + [0.009], False), ([0.02] * 6 + [0.009] * 2, True), ([0.009] * 7 + [np.inf], True),
+                              ([0.009] * 6 + [np.inf] * 2, False)):
+            self.assertEqual(verdicts.may_pass(np.array(errors), 0.01), stays, errors)
+
+    def test_a_factor_has_the_noise_of_draws_repetitions_and_trainings(self):
+        generator = np.random.default_rng(2)
+        base = np.exp(generator.normal(size=(1, 3, 40)))
+        same = verdicts.factor(1.5 * base, base)
+        np.testing.assert_allclose(same.value, 1.5)
+        covered = 0
+        for _ in range(60):
+            noise = (0.2 * generator.normal(size=(3, 1, 1)), 0.02 * generator.normal(size=(1, 3, 1)),
+                     0.1 * generator.normal(size=(1, 1, 40)))
+            of = verdicts.factor(1.2 * base * np.exp(sum(noise)), base)
+            covered += of.low <= 1.2 <= of.high
+        self.assertGreater(covered, 40)    # three trainings bound their mean badly; without them: 10
+        self.assertTrue(verdicts.factor(1.01 * base, base).equal())
+        self.assertFalse(verdicts.factor(1.06 * base, base).equal())
+        alike = verdicts.factor(base * np.exp(0.1 * generator.normal(size=(1, 3, 40))), base)
+        self.assertGreater(alike.p, 0.01)
+        self.assertLess(same.p, 0.001)
+
+    def test_probabilities_are_corrected_as_by_holm(self):
+        self.assertEqual(verdicts.holm({"a": 0.01, "b": 0.04, "c": 0.03}), {"a": 0.03, "c": 0.06, "b": 0.06})
+
+
+class Settings(unittest.TestCase):
+    def test_every_way_of_every_kind_is_of_it_has_its_own_text_and_comes_back_from_json(self):
+        texts = {}
+        for name, kind in itertools.product(scenes.names(), OF_CG):
+            axes = scenes.Scene(name).axes(kind)
+            ways = [axes.first(), *axes.beside(axes.first()), *axes.screened()]
+            self.assertGreater(len(ways), 8)
+            for way, newton in itertools.product(ways, (1, 3)):
+                setting = way.setting(Step(0.02, "bdf2", newton))
+                self.assertIn(kind, setting.kinds())
+                self.assertNotIn(OWN, setting.kinds())
+                self.assertEqual(Setting.from_json(json.loads(json.dumps(setting.as_json()))), setting)
+                self.assertEqual(texts.setdefault(setting.text(), setting), setting)
+                self.assertEqual(setting.of_training(2).of_training(1), setting)
+                self.assertEqual(len(setting.trainings()), 3 if "/score/" in setting.solve + setting.guess else 1)
+
+    def test_frames_of_all_steps_are_at_the_instants_of_the_reference(self):
+        for name in scenes.names():
+            scene = scenes.Scene(name)
+            instants = round(scene.job["time"]["duration_s"] / scene.instant_s, 9)
+            self.assertEqual(instants, int(instants), name)
+            self.assertGreaterEqual(instants, 5)
+            every, of_gauss_seidel = scene.steps()
+            self.assertEqual({step.step_s for step in every}, {step.step_s for step in of_gauss_seidel})
+            self.assertIn(settings.STEPS_S[0], {step.step_s for step in every})
+            self.assertGreaterEqual(len({step.step_s for step in every}), 4)
+
+    def test_the_program_takes_every_way_of_every_scene_and_names_its_guess_alike(self):
+        with tempfile.TemporaryDirectory() as folder:
+            planted(folder)
+            scene = scenes.Scene("rod", folder)
+            for kind in OF_CG:
+                axes = scene.axes(kind)
+                some = [way.setting(Step(0.02, "bdf2", 2)) for way in [axes.first(), *axes.beside(axes.first())]]
+                job = scene.job_of(some, scenes.TUNING, 1)
+                job["time"]["duration_s"] = 0.32
+                guesses = job["guesses"][0]["zip"]
+                listed = {**job, "guesses": list({json.dumps(guess): guess for guess in guesses}.values())}
+                self.assertEqual(rodsweep.Job(**job).plan(probe=False)["tasks"], len(some))
+                plain = rodsweep.Job(**{**listed, "time": {"step_s": 0.02, "steps": 1}, "solve": {"method": "cg"}})
+                own = {settings.guess_text(guess) for guess in listed["guesses"]}
+                self.assertEqual(sorted(plain.plan(probe=False)["guesses"]), sorted(own))
+
+
+class OneSitting(unittest.TestCase):
+    RUNS = [{"host": "a", "revision": "r", "begin": "2026-11-28T10:00:00Z", "end": "2026-11-28T10:20:00Z"},
+            {"host": "a", "revision": "r", "begin": "2026-11-28T10:21:00Z", "end": "2026-11-28T10:40:00Z"}]
+
+    def test_times_of_different_sittings_are_refused(self):
+        sitting.require_one(self.RUNS)
+        for key, value in (("host", "b"), ("revision", "s"), ("end", "2026-11-28T11:00:01Z")):
+            with self.assertRaisesRegex(SweepFileError, "times of different sittings are not compared"):
+                sitting.require_one([self.RUNS[0], {**self.RUNS[1], key: value}])
+
+
+class Judged(unittest.TestCase):
+    @staticmethod
+    def answer(kind, time, error=0.005, failed=0):
+        errors = np.append(np.full(40 - failed, error), np.full(failed, np.inf))
+        setting = Setting(Step(0.02, "bdf2"), f'{{"method": "{kind}"}}')
+        noise = np.exp(0.05 * np.random.default_rng(int(1e3 * time)).normal(size=(1, 3, 40)))
+        return answers.Answer(0.01, kind, setting, errors, 0, 0, time * noise)
+
+    def test_a_kind_has_a_factor_if_it_keeps_to_the_error_on_the_draws_for_testing(self):
+        found = answers.judged({a.kind: a for a in (
+            self.answer("a", 1), self.answer("b", 1.005), self.answer("c", 2), self.answer("d", 0.5, error=0.02),
+            self.answer("e", 0.5, failed=3))})
+        self.assertEqual({kind: answer.verdict for kind, answer in found.items()},
+                         {"a": "cheapest", "b": "equal", "c": "slower", "d": "", "e": ""})
+        self.assertAlmostEqual(found["c"].factor.value, 2, delta=0.05)
+        self.assertEqual(answers.judged({"d": found["d"]}), {"d": found["d"]})
+
+
+class Small(unittest.TestCase):
+    """One small scene, from the search to the table."""
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
-        models = os.path.join(cls.folder.name, "models")
-        os.makedirs(os.path.join(models, "seeds"))
-        for name in ("rods.h5", "seeds/rods-2.h5", "seeds/rods-large-2.h5"):
-            shutil.copy(MODEL, os.path.join(models, name))
-        steps = {"grid": [0.02, 0.01]}
-        job = {"name": "rod_tuning", "kind": "sweep", "seed": 1, "samples": 2, "evaluation": "closed_loop",
-               "scene": {"type": "bending_rod", "segments": 6, "length_m": {"uniform": [1, 2]}, "radius_m": 0.05,
-                         "density_kg_m3": 1000, "youngs_modulus_pa": 1e7, "torsion_modulus_pa": 1e6, "damping_per_s": 2},
-               "time": {"duration_s": 0.32, "step_s": {"zip": [0.0025, steps, steps]},
-                        "integrator": {"zip": ["bdf2", {"grid": ["euler", "bdf2"]}, "bdf2"]},
-                        "newton_iterations": {"zip": [20, 1, {"grid": [1, 2]}]}},
-               "solve": {"zip": [{"method": "direct"}, {"method": "direct"},
-                                 {"preconditioner": {"grid": ["jacobi", "block_icc", "learned"]}, "tolerance": 1e-2,
-                                  "max_iterations": 500, "learned_preconditioner": {"model": "models/rods.h5"}}]},
-               "guesses": ["zero", "previous", "linear", {"copingnet": {"model": "models/rods.h5"}}],
-               "record": {"solves": "summary", "norms": "none", "trajectory_every": 4}}
-        cls.tuning, cls.test = (os.path.join(cls.folder.name, f"rod_{which}.h5") for which in ("tuning", "test"))
-        cls.run_job(job, cls.tuning)
+        cls.enterClassContext(mock.patch.multiple(settings, **FEW))
+        cls.enterClassContext(mock.patch.object(search, "OF_CG", CG))
+        planted(cls.folder.name)
+        cls.scene = scenes.Scene("rod", cls.folder.name)
+        cls.work = os.path.join(cls.folder.name, "work")
+        cls.search = search.Search(Runs(cls.scene, cls.work, 1))
+        cls.candidates = cls.search.run()
+        cls.held = sitting.Sitting(cls.scene, cls.work).hold(cls.candidates)
+        chosen, times = sitting.of(cls.held)
+        cls.search.runs.measure(times, scenes.TEST)
+        cls.scored = answers.Scored("rod", "rod", "r", "2026-11-28", cls.search.reference(), cls.search.tried(),
+                                    cls.search.levels, answers.training_minutes(cls.folder.name, chosen.values()),
+                                    answers.answers_of(chosen, times, cls.search.runs))
 
-    @staticmethod
-    def run_job(job, results):
-        path = results.replace(".h5", ".json")
-        if job:
-            with open(path, "w", encoding="utf-8") as file:
-                json.dump(job, file)
-        subprocess.run([os.environ["RODSWEEP"], "run", path, "-o", results], check=True, capture_output=True)
+    def test_errors_are_distances_from_the_finer_reference_at_fixed_instants(self):
+        some = [settings.direct(Step(step, "bdf2")) for step in (0.02, 0.01)]
+        with SweepFile(os.path.join(self.work, "rod_reference_tuning.h5")) as file:
+            fine = np.flatnonzero(file.parameter("time.step_s").values == 0.00125)
+            exact = [accuracy.frames(file, task) for task in fine]
+            self.assertEqual(sorted(exact[0])[::2], [0, 80, 160, 240, 320])
+        for setting in some:
+            path = os.path.join(self.folder.name, f"{setting.step.step_s}.h5")
+            with rodsweep.Job(**self.scene.job_of([setting], scenes.TUNING, 5)).run(output=path, workers=1) as results:
+                file = results.file
+                own = [accuracy.frames(file, task) for task in range(5)]
+                self.assertEqual(list(own[0]), [0, 80, 160, 240, 320])
+                size = np.linalg.norm(np.ptp(exact[1][0], axis=0))
+                error = max(np.sqrt(((own[1][t] - exact[1][t]) ** 2).sum(1).mean()) / size for t in own[1])
+                self.assertAlmostEqual(self.search.runs.of(setting, samples=2).error[1] / error, 1, 3)
+        coarse, fine = (np.median(self.search.runs.of(setting, samples=2).error) for setting in some)
+        self.assertGreater(coarse, 2 * fine)    # of second order
 
-    def test_numbers_are_those_of_the_rows(self):
-        with SweepFile(self.tuning) as file:
-            found = score.runs(file)
-            self.assertEqual(len(found), 4 + 2 * 2 * 3 * 4)
-            rows, step = file.parameter("time.step_s").values, file.parameter("time.integrator").values
-            direct = found[score.Setting(Way("direct", 1), "euler", 0.02)]
-            task = next(task for task in range(file.task_count) if rows[task] == 0.02 and step[task] == "euler"
-                        and file.own_guess[task] < 0 and file.sample[task] == 1)
-            of = slice(file.first_step[task], file.first_step[task] + 16)
-            seconds = (file.h5["/timing/steps/rest_s"][of] + file.h5["/timing/steps/solve_s"][of]).astype(float)
-            self.assertAlmostEqual(direct.time_s[1], np.minimum(seconds, 5 * np.median(seconds)).sum() / 0.32, 6)
-            order = {size: np.median(found[score.Setting(Way("direct", 1), "bdf2", size)].error) for size in (0.02, 0.01)}
-            self.assertGreater(order[0.02], 2 * order[0.01])   # of second order
-            self.assertEqual(direct.products.tolist(), [0, 0])
+    def test_the_draws_for_testing_are_others(self):
+        lengths = []
+        for draws in scenes.DRAWS:
+            with SweepFile(os.path.join(self.work, f"rod_reference_{draws}.h5")) as file:
+                lengths.append(set(file.parameter("scene.length_m").values.tolist()))
+        self.assertEqual([len(of) for of in lengths], [5, 5])
+        self.assertFalse(lengths[0] & lengths[1])
 
-    def test_settings_are_measured_on_other_draws_and_shown(self):
-        done = run("score.py", "--jobs", self.tuning)
+    def test_candidates_are_admitted_and_no_cheaper_one_was_found(self):
+        self.assertEqual(self.search.levels, [1e-1, 1e-2, 1e-3])
+        for (level, kind), some in self.candidates.items():
+            for setting in some:
+                self.assertIn(kind, setting.kinds())
+                self.assertTrue(verdicts.admitted(self.search.errors(setting), level))
+                for training in setting.trainings():
+                    self.assertEqual(len(self.search.runs.of(training).error), 5)
+        self.assertTrue(all(self.candidates[1e-2, kind] for kind in (settings.DIRECT, *CG)))
+        self.assertEqual(list(self.search.tried()), [kind for kind in KINDS if kind != OWN])
+        self.assertEqual(self.search.tried()[settings.DIRECT], 4)
+
+    def test_what_is_known_is_not_simulated_again_and_a_line_that_was_being_written_is(self):
+        shown = []
+        copied = os.path.join(self.folder.name, "copied")
+        shutil.copytree(self.work, copied)
+        known = Runs(self.scene, copied, 1, shown.append)
+        self.assertEqual(set(known.known), set(self.search.runs.known))
+        self.assertEqual(search.Search(known).run(), self.candidates)
+        self.assertEqual([line for line in shown if "settings" in line], [])
+        with open(known.path, "r+", encoding="utf-8") as file:
+            text = file.read()
+            file.truncate(len(text) - 9)
+        cut = Runs(self.scene, copied, 1)
+        self.assertEqual(len(cut.known), len(known.known) - 1)
+        last = next(iter(set(known.known) - set(cut.known)))
+        cut.measure([last[0]], *last[1:])
+        np.testing.assert_array_equal(cut.of(*last).error, known.of(*last).error)
+
+    def test_the_table_comes_back_from_its_file_and_has_every_kind(self):
+        path = os.path.join(self.folder.name, "analysis/results/score/rod.json")
+        os.makedirs(os.path.dirname(path))
+        self.scored.write(path)
+        done = run("score.py", "rod", "--root", self.folder.name, "-o", self.folder.name, "--format", "png")
         self.assertEqual(done.code, 0, done.stderr)
-        self.run_job(None, self.test)
-        with SweepFile(self.tuning) as tuning, SweepFile(self.test) as test:
-            self.assertEqual(len(np.unique(test.sample)), 10)
-            lengths = [set(file.parameter("scene.length_m").values.tolist()) for file in (tuning, test)]
-            self.assertFalse(lengths[0] & lengths[1])
-            found, chosen = score.runs(test), score.chosen(score.runs(tuning))
-            self.assertLessEqual(set(chosen.values()), set(found))
-            self.assertEqual({setting.text(): setting.solve for setting in chosen.values()},
-                             {setting.text(): setting.solve for setting in found if setting in set(chosen.values())})
-            self.assertEqual(chosen[0.1, "CG from zero"].solve["max_iterations"], 500)
-            for answer in ("CG, learned guess", "CG, learned preconditioner"):
-                way = chosen[0.1, answer].way    # which guess is the fastest with a preconditioner depends on the clock
-                learned = way.guess.startswith("copingnet") + way.preconditioner.startswith("learned")
-                self.assertEqual(len(score.trainings(chosen[0.1, answer], found)), 2**learned, way)
-        done = run("score.py", self.tuning, "-o", self.folder.name, "--format", "png")
-        self.assertEqual(done.code, 0, done.stderr)
-        blocks = [block.splitlines() for block in done.stdout.split("\n\n\n")[0].split("\n\n")]
-        self.assertEqual([block[0].split("  ")[0] for block in blocks], [
-            *(f"bending rod, error {level} %" for level in ("10", "1", "0.1")),
-            "bending rod, error 0.01 %: reached by no setting on the tuning draws", "model"])
-        self.assertRegex(blocks[-1][1], r"^rods +[\d.]+ +120$")
-        self.assertRegex(blocks[0][1], r"cheapest of all +[\d.]+ +1 +1 to 1 ")
-        self.assertEqual([line.split("  ")[0] for line in blocks[0][1:]], list(score.ANSWERS[:-1]))
+        self.assertEqual(done.stdout.splitlines()[:-2], answers.table(self.scored))
+        blocks = done.stdout.split("\n\n")
+        for block, level in zip(blocks, ("10", "1", "0.1")):
+            lines = block.splitlines()
+            self.assertTrue(lines[0].startswith(f"rod, error {level} % "), lines[0])
+            self.assertEqual([line.split("  ")[0] for line in lines[1:]], [kind for kind in KINDS if kind != OWN])
+            self.assertEqual(sum(" cheapest " in line for line in lines[1:]), 1)
+        self.assertRegex(blocks[3], r"rods +- - -")    # models that an earlier version trained
         self.assertIn(os.path.join(self.folder.name, "score.png"), done.stdout)
+        self.own_guess()
 
-    def test_a_guess_in_python_has_its_row_beside_the_others(self):
-        here = os.getcwd()
-        self.addCleanup(os.chdir, here)
-        with tempfile.TemporaryDirectory() as folder:
-            os.chdir(folder)
-            done = run("score.py", "--jobs", self.tuning, "-o", ".")
-            self.assertEqual(done.code, 0, done.stderr)
-            with open("half.py", "w", encoding="utf-8") as file:
-                file.write("class Guess:\n    def __init__(self, rods, options): pass\n"
-                           "    def propose(self, system): return 0 * system.b\n")
-            done = run("score.py", "half.py", "rod_test.json", "--workers", "1")
-            self.assertEqual(done.code, 0, done.stderr)
-            size = 1e-6 * os.path.getsize("results/rod_test_half.h5")
-            with SweepFile("results/rod_test_half.h5") as file:
-                words = f"1 new file in results/ will have {file.task_count} tasks and take {size:.0f} MB"
-            self.assertIn(words, done.stderr)
-            block = done.stdout.split("\n\n")[0].splitlines()
-            self.assertEqual([line.split("  ")[0] for line in block[1:]], list(score.ANSWERS))
-            self.assertRegex(block[-1], r"^your guess +[\d.]+ .* from python half ")
-            again = run("score.py", "half.py", "rod_test.json", "--workers", "1")
-            self.assertEqual(again.stdout, done.stdout)    # of the same results
-            self.assertNotIn("new file", again.stderr)
+    def own_guess(self):
+        guess = os.path.join(self.folder.name, "none.py")
+        with open(guess, "w", encoding="utf-8") as file:
+            file.write("class Guess:\n    def __init__(self, rods, options): pass\n"
+                       "    def propose(self, system): return 0 * system.b\n")
+        done = run("score.py", guess, "rod", "--root", self.folder.name, "--samples", "4", "--work", self.work)
+        self.assertEqual(done.code, 0, done.stderr)
+        lines = done.stdout.splitlines()
+        self.assertEqual([line.split("  ")[0] for line in lines[1:9]], list(KINDS))
+        self.assertRegex(lines[8], "^your guess +[0-9.]+ .* from python none to ")
+
+    def test_a_scene_without_results_says_how_to_measure_it(self):
+        done = run("score.py", "tree")
+        self.assertEqual(done.code, 2)
+        self.assertIn("tree was not measured: run score.py --errors tree, then --times tree", done.stderr)
+        self.assertIn("scene 'trees'", run("score.py", "trees").stderr)

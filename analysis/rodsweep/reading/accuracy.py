@@ -1,55 +1,14 @@
-"""What a comparison of errors and costs needs of a task: how it moves the rods, where they were, and the time of its
-steps. For score.py, balance.py and integrators.py.
-
-A way of moving the rods is a method with its effort: Newton iterations of the direct solve; for CG also tolerance,
-preconditioner and guess; for xpbd and pbd their iterations. The time of a step has its assembly, guess and solves.
+"""What a comparison of errors and costs needs of a task: where its segments were, and the time of its steps, which has
+assembly, guess and solves. For score.py, balance.py and integrators.py.
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 
-from rodsweep.reading import combinations, measures, texts
+from rodsweep.reading import measures
 from rodsweep.reading.errors import KeyNotFound
 
 REST, ASSEMBLY, DIRECT, GUESS, CG = ("/timing/steps/rest_s", *(f"/timing/solves/{part}_s" for part in
                                                                ("assemble", "direct", "guess", "cg")))
-
-
-@dataclass(frozen=True)
-class Way:
-    """Fields that do not apply are empty or 0."""
-    method: str               # direct, cg, xpbd, pbd, or a network's method and its model
-    newton: int = 0
-    iterations: int = 0
-    tolerance: float = 0
-    preconditioner: str = ""
-    guess: str = ""
-    forcing: bool = False     # the tolerance holds for the first solves of a step
-
-    def text(self):
-        if self.iterations:
-            return f"{self.method} {self.iterations}"
-        solver = f"CG {self.preconditioner} from {self.guess}" if self.method == "cg" else self.method
-        to = f" to {texts.tolerance_label(self.tolerance)}" if self.tolerance else ""
-        to += " with forcing terms" if self.forcing else ""
-        return f"{solver}{to}, Newton {self.newton}"
-
-
-def way_of(file, task):
-    """The Way of a task."""
-    def value(key):
-        return file.parameter(key).values[task]
-
-    method = value("solve.method")
-    if method in ("xpbd", "pbd"):
-        return Way(method, iterations=measures.gauss_seidel_iterations(file, task))
-    newton = int(value("time.newton_iterations"))
-    if method == "cg":
-        forced = "solve.forcing" in file.parameters and value("solve.forcing") == "eisenstat_walker"
-        return Way(method, newton, 0, float(value("solve.tolerance")), combinations.preconditioner_text(file, task),
-                   file.guesses[file.own_guess[task]], forced)
-    return Way(str(measures.without_guess(file, [task])[0]), newton)
 
 
 def frames(file, task):

@@ -27,7 +27,8 @@ class Training:
     kept_ratio: np.ndarray      # [tolerance], of the model; NaN until the training has ended
     base_ratio: np.ndarray      # of its base guess alone
     simulations: int            # number of validation simulations for the ratios
-    seconds: float
+    seconds: float              # wall time
+    processor_seconds: float    # of all ranks; NaN if an earlier version trained it
     scenes: dict                # {type of scene: (kept_ratio, base_ratio)}, if there are several
     job: dict                   # as it was written
     network: dict               # settings, with defaults
@@ -58,6 +59,7 @@ def read(path):
                              training["rate"][:], training["cg_ratio"][:], int(training.attrs["best_epoch"]),
                              h5["validation/cg_ratio"][:], h5["validation/base_cg_ratio"][:],
                              int(h5["validation"].attrs["simulations"]), float(h5["timing/epoch_s"][:].sum()),
+                             _sum(h5, "timing/epoch_processor_s"),
                              _scenes(h5["validation"]), json.loads(as_text(h5["job/text"][0])),
                              json.loads(as_text(h5["model/settings"][0])), int(h5["data"].attrs["training_simulations"]),
                              sum(weights.size for weights in h5["model/weights"].values()))
@@ -66,6 +68,10 @@ def read(path):
     if not len(found.training_loss):
         raise SweepFileError(f"{path} has nothing to show yet: no epoch has ended")
     return found
+
+
+def _sum(h5, path):
+    return float(h5[path][:].sum()) if path in h5 else float("nan")
 
 
 def _scenes(validation):
