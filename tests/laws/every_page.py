@@ -40,6 +40,7 @@ LEFT_OUT = {
     "docs/python.md": {"analysis/export.py results/demo.h5 --level solves -o solves.parquet": "needs pyarrow"},
     "docs/report.md": {"make ": "builds, minutes", "jobs/studies.py ": "writes into the repository"},
     "docs/running.md": {"sbatch ": "needs Slurm: command/slurm_script and test-cluster run it"},
+    "docs/score.md": {"analysis/score.py --": "hours"},
     "docs/speed.md": {"make bench": "builds, an hour"},
 }
 MODES = "takes a minute"
