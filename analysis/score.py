@@ -8,6 +8,7 @@ cheapest kind, products with A, share of solves for which a network ran, error, 
   --errors   looks for settings that may be the cheapest of their kind. It can be stopped, and goes on; other things may
              run beside it. Hours.
   --times    times these in one sitting, with nothing beside, and writes NAME.json. Minutes a scene.
+  --again    times the chosen settings on draws that were never used, and says which factors are outside their intervals.
 
 With a guess in Python, FILE.py, the script simulates the chosen settings of CG with this guess, times them in one sitting
 with the chosen ones of all kinds, and shows its row beside the others'.
@@ -15,6 +16,7 @@ with the chosen ones of all kinds, and shows its row beside the others'.
 
 import os
 import sys
+from dataclasses import replace
 
 from rodsweep.drawing import layout, study, style
 from rodsweep.reading import commandline
@@ -31,7 +33,6 @@ EXAMPLES = """examples:
   analysis/score.py --times net         # writes analysis/results/score/net.json
   analysis/score.py my_guess.py net     # a guess of yours, on nets (docs/own-guess.md)"""
 WORK = os.path.join("results", "score")
-MEASURED = os.path.join("analysis", "results", "score")
 
 
 def arguments():
@@ -44,6 +45,7 @@ def arguments():
     what = made.add_mutually_exclusive_group()
     what.add_argument("--errors", action="store_true", help="search for settings")
     what.add_argument("--times", action="store_true", help="time those that were found")
+    what.add_argument("--again", action="store_true", help="time the chosen ones on draws that were never used, and compare")
     made.add_argument("--inputs", nargs="+", metavar="FILE", default=[], help="files that the guess reads, such as weights")
     made.add_argument("--workers", type=commandline.whole_number, default=os.cpu_count(), metavar="N",
                       help="cores for --errors (default: all)")
@@ -68,22 +70,23 @@ def main():
             print("\n".join(answers.table(scored)), flush=True)
     elif options.errors:
         for scene in chosen:
-            report(Search(Runs(scene, options.work, options.workers, say)).run())
+            search = Search(Runs(scene, options.work, options.workers, say))
+            report(search.run())
+            search.runs.publish()
     elif options.times:
         for scene in chosen:
             time_all(scene, options.work, options.workers)
+    elif options.again:
+        for scene in chosen:
+            time_again(scene, measured(scene), options.work, options.workers)
     else:
-        show([measured(scene) for scene in chosen if os.path.exists(path_of(scene)) or options.scenes], options)
-
-
-def path_of(scene):
-    return os.path.join(scene.root, MEASURED, f"{scene.name}.json")
+        show([measured(scene) for scene in chosen if os.path.exists(scene.measured(".json")) or options.scenes], options)
 
 
 def measured(scene):
-    if not os.path.exists(path_of(scene)):
+    if not os.path.exists(scene.measured(".json")):
         raise KeyNotFound(f"{scene.name} was not measured: run score.py --errors {scene.name}, then --times {scene.name}")
-    return Scored.read(path_of(scene))
+    return Scored.read(scene.measured(".json"))
 
 
 def report(candidates):
@@ -101,9 +104,20 @@ def time_all(scene, work, workers):
     scored = Scored(scene.name, scene.title, held["runs"][0]["revision"], held["runs"][-1]["end"][:10], search.reference(),
                     search.tried(), search.levels, answers.training_minutes(scene.root, chosen.values()),
                     answers.answers_of(chosen, times, runs))
-    os.makedirs(os.path.dirname(path_of(scene)), exist_ok=True)
-    scored.write(path_of(scene))
+    os.makedirs(os.path.dirname(scene.measured("")), exist_ok=True)
+    scored.write(scene.measured(".json"))
     print("\n".join(answers.table(scored)), flush=True)
+
+
+def time_again(scene, known, work, workers):
+    """Prints the factors of a scene, those on draws that were never used, and whether the intervals have a number in
+    common."""
+    runs = Runs(scene, work, workers, say)
+    chosen = {(answer.level, answer.kind): answer.setting for answer in known.answers}
+    times = sitting.Sitting(scene, work, say).repeated(chosen.values(), scenes.AGAIN, scene.samples)
+    runs.measure(times, scenes.AGAIN)
+    again = replace(known, answers=answers.answers_of(chosen, times, runs, scenes.AGAIN))
+    print("\n".join(answers.comparison(known, again)), flush=True)
 
 
 def show(scored, options):

@@ -88,11 +88,11 @@ class Scored:
         return cls(**found, answers=answers)
 
 
-def answers_of(chosen, times, runs):
-    """Those of a sitting ({(level, kind): Setting}, {Setting: [repetition, draw]}), with errors of the draws for testing."""
+def answers_of(chosen, times, runs, draws=TEST):
+    """Those of a sitting ({(level, kind): Setting}, {Setting: [repetition, draw]}), with errors of its draws."""
     made = []
     for (level, kind), setting in chosen.items():
-        of = [runs.of(training, TEST, next(iter(times.values())).shape[1]) for training in setting.trainings()]
+        of = [runs.of(training, draws, times[training].shape[1]) for training in setting.trainings()]
         made.append(Answer(level, kind, setting, np.median([one.error for one in of], axis=0),
                            float(np.median([one.products for one in of])), float(np.mean([one.network for one in of])),
                            np.array([times[training] for training in setting.trainings()])))
@@ -151,6 +151,22 @@ def table(scored):
                  for name, of in scored.training_minutes.items()]
         lines += [*texts.aligned(rows), ""]
     return lines
+
+
+def comparison(known, again):
+    """Lines: the factors of the same settings over the same cheapest kind, on two sets of draws."""
+    rows = [[known.title, "error", "÷ cheapest", "95 %", "again", "95 %", ""]]
+    for level in known.levels:
+        before, after = known.at(level), {answer.kind: answer for answer in again.answers if answer.level == level}
+        best = next((kind for kind, answer in before.items() if answer.verdict == FASTEST), None)
+        for kind, answer in before.items():
+            if answer.factor and answer.verdict != FASTEST:
+                found = verdicts.factor(after[kind].time_s, after[best].time_s)
+                apart = found.low > answer.factor.high or found.high < answer.factor.low
+                cells = [text for of in (answer.factor, found)
+                         for text in (texts.short_text(of.value, 3), f"{of.low:.3g} to {of.high:.3g}")]
+                rows.append([kind, f"{100 * level:g} %", *cells, "differs" if apart else "agrees"])
+    return texts.aligned(rows)
 
 
 def _cells(answer):

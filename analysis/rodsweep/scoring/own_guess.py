@@ -4,8 +4,6 @@ network it replaces theirs. All are simulated on the first draws for testing and
 import os
 from dataclasses import replace
 
-import numpy as np
-
 from rodsweep.scoring import answers, sitting
 from rodsweep.scoring.runs import Runs
 from rodsweep.scoring.scenes import TEST
@@ -25,12 +23,9 @@ def scored(scene, known, path, inputs, samples, work, show):
     # A guess may have changed since: nothing of it is remembered.
     runs = Runs(scene, os.path.join(work, "own"), os.cpu_count(), show)
     runs.known = {key: value for key, value in runs.known.items() if OWN not in key[0].kinds()}
-    every = [training for setting in chosen.values() for training in setting.trainings()]
-    every += [setting for some in own.values() for setting in some]
-    runs.measure(every, TEST, samples)
-    held = sitting.Sitting(scene, work, show)
-    repeated = [held.times(every, TEST, samples, repetition) for repetition in range(1, sitting.REPETITIONS + 1)]
-    times = {setting: np.array([of[setting] for of in repeated]) for setting in dict.fromkeys(every)}
+    every = [*chosen.values(), *(setting for some in own.values() for setting in some)]
+    runs.measure([training for setting in every for training in setting.trainings()], TEST, samples)
+    times = sitting.Sitting(scene, work, show).repeated(every, TEST, samples)
     found = answers.answers_of(chosen, times, runs)
     for level, some in own.items():
         of = answers.answers_of({(level, k): setting for k, setting in enumerate(some)}, times, runs)

@@ -1,4 +1,5 @@
-"""Simulates settings of a scene and keeps what they gave: NAME.jsonl, a line per setting, draws and number of samples.
+"""Simulates settings of a scene and keeps what they gave: NAME.jsonl, a line per setting, draws and number of samples. It
+begins with that of analysis/results/score, if there is one.
 
 The error of a simulation is the root mean square distance of its segments from the reference, over the diagonal of the
 box around all segments at the start, at the worst instant; infinite if it failed. Errors have the same bits on any
@@ -7,6 +8,7 @@ are worth a sitting.
 """
 
 import json
+import lzma
 import os
 import tempfile
 import warnings
@@ -45,7 +47,10 @@ class Runs:
     def __init__(self, scene, folder, workers, show=lambda text: None):
         self.scene, self.folder, self.workers, self.show = scene, folder, workers, show
         os.makedirs(folder, exist_ok=True)
-        self.path = os.path.join(folder, f"{scene.name}.jsonl")
+        self.path, published = os.path.join(folder, f"{scene.name}.jsonl"), scene.measured(".jsonl.xz")
+        if not os.path.exists(self.path) and os.path.exists(published):
+            with lzma.open(published, "rt", encoding="utf-8") as file:
+                outputs.write(self.path, file.read())
         self.known = {}
         self._frames = {}
         if os.path.exists(self.path):
@@ -56,6 +61,11 @@ class Runs:
                 outputs.write(self.path, "".join(whole))
             for line in whole:
                 self._remember(json.loads(line))
+
+    def publish(self):
+        os.makedirs(os.path.dirname(self.scene.measured("")), exist_ok=True)
+        with open(self.path, "rb") as file, outputs.whole(self.scene.measured(".jsonl.xz")) as part, open(part, "wb") as out:
+            out.write(lzma.compress(file.read(), preset=9 | lzma.PRESET_EXTREME))
 
     def _remember(self, entry):
         numbers = (np.array([np.inf if value is None else value for value in entry[name]], dtype=float)

@@ -1,8 +1,8 @@
 """The scenes of the score: jobs/score/NAME_draws.json is the reference of its draws. Everything else follows from the job.
 
 The reference is the direct solve in balance with BDF2, with two steps, s and s / 2. Its frames at the larger step are the
-instants at which motions are compared. `samples` is the number of draws for tuning, and that for testing. The seeds of
-the latter are SEEDS_APART greater.
+instants at which motions are compared. `samples` is the number of draws for tuning, for testing, and for those who time
+the chosen settings again. Seeds of these are SEEDS_APART apart.
 """
 
 import copy
@@ -17,8 +17,9 @@ from rodsweep.scoring.settings import Axes
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", ".."))
 JOBS = os.path.join("jobs", "score")
 MODELS = os.path.join("network", "pretrained")
+MEASURED = os.path.join("analysis", "results", "score")
 LEVELS = (1e-1, 1e-2, 1e-3, 1e-4)
-TUNING, TEST = DRAWS = ("tuning", "test")
+TUNING, TEST, AGAIN = DRAWS = ("tuning", "test", "again")
 ENDING = "_draws.json"
 SEEDS_APART = 10000
 CHAINS = {"rods": (5, 30), "rods-large": (3,)}
@@ -49,6 +50,10 @@ class Scene:
         self.meshed = scene["type"] in ("lattice", "net")
         self.steps_s = self.job["time"]["step_s"]["grid"]
         self.instant_s = self.steps_s[0] * self.job["record"]["trajectory_every"]
+
+    def measured(self, ending):
+        """Path of what was measured: NAME.json, and NAME.jsonl.xz with all settings that were tried."""
+        return os.path.join(self.root, MEASURED, self.name + ending)
 
     def axes(self, kind):
         paper = PAPER.get(self.job["scene"]["type"])

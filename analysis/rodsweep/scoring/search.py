@@ -3,8 +3,8 @@
 First all steps of the grid with the direct solve, and all of Gauss-Seidel, on a few draws. Then CG: a search for every kind
 and error goes along the axes (settings.Axes) from the cheapest step at which the direct solve may keep to the error. It
 tries every value of every axis, moves to the cheapest that may keep to the error, and ends where no axis has a cheaper
-one. Of all that was tried, the CHEAPEST that may keep to the error and take at most NEAR times as long as the cheapest
-run on all draws. Those that are admitted there are candidates for a sitting.
+one. Of all that was tried, the CHEAPEST that may keep to the error run on all draws; if none of them is admitted there,
+the next ones. Those that are admitted, and take at most NEAR times as long as the first, are candidates for a sitting.
 """
 
 from dataclasses import dataclass
@@ -12,11 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from rodsweep.scoring import settings, verdicts
-from rodsweep.scoring.scenes import DRAWS, LEVELS, TUNING
+from rodsweep.scoring.scenes import LEVELS, TEST, TUNING
 from rodsweep.scoring.settings import KINDS, OF_CG, OWN, Way
 
 NEAR = 2
 CHEAPEST = 6
+MOST_TRIES = 5
 FINALISTS = 3
 MOST_ROUNDS = 4
 MOST_STEPS = 12
@@ -55,21 +56,26 @@ class Search:
         self.runs.measure([settings.gauss_seidel(step, sweeps) for step in of_gauss_seidel for sweeps in settings.SWEEPS],
                           samples=few)
         self._search_ways(few)
-        near = {(level, kind): self.near(level, kind) for level in self.levels for kind in KINDS if kind != OWN}
-        self.runs.measure([other for some in near.values() for setting in some for other in setting.trainings()])
-        return {(level, kind): self.finalists(level, some) for (level, kind), some in near.items()}
+        places = {(level, kind): self.near(level, kind) for level in self.levels for kind in KINDS if kind != OWN}
+        finalists = {}
+        for begin in range(0, MOST_TRIES * CHEAPEST, CHEAPEST):
+            some = {of: near[begin:begin + CHEAPEST] for of, near in places.items() if not finalists.get(of)}
+            self.runs.measure([training for near in some.values() for setting in near for training in setting.trainings()])
+            finalists |= {(level, kind): self.finalists(level, near) for (level, kind), near in some.items()}
+        return {of: finalists[of] for of in places}
 
-    def finalists(self, level, settings_near):
-        kept = [setting for setting in settings_near if verdicts.admitted(self.errors(setting), level)]
+    def near(self, level, kind):
+        """Settings that may keep to the level, cheapest first."""
+        return sorted((s for s in self.found() if kind in s.kinds() and self.may_pass(s, level)), key=self.time)
+
+    def finalists(self, level, near):
+        kept = [setting for setting in near if self.time(setting) <= NEAR * self.time(near[0])
+                and verdicts.admitted(self.errors(setting), level)]
         return sorted(kept, key=lambda setting: self.time(setting, self.scene.samples))[:FINALISTS]
 
     def errors(self, setting):
         """On all draws; of several trainings the median, so that one that fails is out-voted."""
         return np.median([self.runs.of(other).error for other in setting.trainings()], axis=0)
-
-    def near(self, level, kind):
-        found = sorted((s for s in self.found() if kind in s.kinds() and self.may_pass(s, level)), key=self.time)
-        return [s for s in found[:CHEAPEST] if self.time(s) <= NEAR * self.time(found[0])]
 
     def useful_steps(self, level):
         """Those with which the direct solve may keep to the level, cheapest first."""
@@ -102,7 +108,7 @@ class Search:
 
     def reference(self):
         """{draws: bound of the median error of the reference}"""
-        return {draws: float(f"{verdicts.upper_bound(self.runs.reference(draws)[1]):.3g}") for draws in DRAWS}
+        return {draws: float(f"{verdicts.upper_bound(self.runs.reference(draws)[1]):.3g}") for draws in (TUNING, TEST)}
 
     def tried(self):
         """{kind: number of settings}"""

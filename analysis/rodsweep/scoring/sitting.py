@@ -56,12 +56,17 @@ class Sitting:
         every = [setting for some in candidates.values() for setting in some]
         first = self.times(every, TUNING, min(FOR_CHOICE, self.scene.samples), 0)
         chosen = {of: min(some, key=lambda s: np.median(first[s])) for of, some in candidates.items() if some}
-        tested = [training for setting in chosen.values() for training in setting.trainings()]
-        repeated = [self.times(tested, TEST, self.scene.samples, repetition) for repetition in range(1, REPETITIONS + 1)]
+        times = self.repeated(chosen.values(), TEST, self.scene.samples)
         return {"runs": [{name: str(run[name]) for name in ("begin", "end", *SAME)} for run in self.runs],
                 "chosen": [{"level": level, "kind": kind, **setting.as_json()} for (level, kind), setting in chosen.items()],
-                "times": [{**setting.as_json(), "time_s": [[float(f"{value:.5g}") for value in of[setting]] for of in repeated]}
-                          for setting in dict.fromkeys(tested)]}
+                "times": [{**setting.as_json(), "time_s": [[float(f"{value:.5g}") for value in row] for row in of]}
+                          for setting, of in times.items()]}
+
+    def repeated(self, settings, draws, samples):
+        """{setting: [repetition, draw]} of settings, with all trainings."""
+        every = list(dict.fromkeys(training for setting in settings for training in setting.trainings()))
+        found = [self.times(every, draws, samples, repetition) for repetition in range(1, REPETITIONS + 1)]
+        return {setting: np.array([of[setting] for of in found]) for setting in every}
 
 
 def times_in(file, settings):
