@@ -4,6 +4,7 @@ numbers are those of the files. A small scene goes through all of it; the grid i
 import itertools
 import json
 import os
+import re
 import shutil
 import tempfile
 import unittest
@@ -97,6 +98,8 @@ class Settings(unittest.TestCase):
                 setting = way.setting(Step(0.02, "bdf2", newton))
                 self.assertIn(kind, setting.kinds())
                 self.assertNotIn(OWN, setting.kinds())
+                for stop in re.findall(r'"stop_at": ([^,}]+)', setting.guess):
+                    self.assertIn(round(float(stop) / json.loads(setting.solve)["tolerance"], 6), settings.STOPS)
                 self.assertEqual(Setting.from_json(json.loads(json.dumps(setting.as_json()))), setting)
                 self.assertEqual(texts.setdefault(setting.text(), setting), setting)
                 self.assertEqual(setting.of_training(2).of_training(1), setting)

@@ -136,10 +136,15 @@ class Way:
                  **json.loads(self.preconditioner)}
         if self.forcing and step.newton > 1:
             solve["forcing"] = "eisenstat_walker"
-        guess = json.loads(self.guess)
-        if isinstance(guess, dict) and "stop_at" in guess.get("copingnet", {}):
-            guess["copingnet"]["stop_at"] = float(f"{guess['copingnet']['stop_at'] * self.tolerance:.1e}")
-        return Setting(step, canonical(solve), canonical(guess))
+        return Setting(step, canonical(solve), canonical(_stopping(json.loads(self.guess), self.tolerance)))
+
+
+def _stopping(guess, tolerance):
+    """A guess whose "stop_at", also within another guess, is multiplied by the tolerance."""
+    if not isinstance(guess, dict):
+        return guess
+    return {key: float(f"{value * tolerance:.1e}") if key == "stop_at" else _stopping(value, tolerance)
+            for key, value in guess.items()}
 
 
 def direct(step):
