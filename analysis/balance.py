@@ -2,12 +2,12 @@
 """Error against wall time for kinds of time step: Euler or BDF2, with or without the balance of momentum.
 
 Each kind of scene has a panel: the error at the end of a simulation over the wall time of a simulated second, one point
-per time step. If a kind has only one time step, there is no figure. The error is the root mean
-square distance of the segments from where they are with the smallest step, relative to the diagonal of the box around
-all segments at the start. With the smallest step, BDF2 in balance is the reference if it was tried, else Euler in
-balance. Times and errors are medians over simulations. The table adds the mean Newton iterations of a step and the
-median momentum residual after the first step. The file needs trajectories to the end of the simulation
-(record.trajectory_every) and /solves (record.solves "all").
+per time step. If a kind has only one time step, there is no figure. The error is the root mean square distance of the
+segments from where they are with the smallest step, relative to the diagonal of the box around all segments at the
+start. With the smallest step, BDF2 in balance is the reference if it was tried, else Euler in balance. Times and errors
+are medians over simulations. The table adds the mean Newton iterations of a step and the median momentum residual after
+the first step. The file needs trajectories to the end of the simulation (record.trajectory_every) and /solves
+(record.solves "all").
 """
 
 from dataclasses import dataclass

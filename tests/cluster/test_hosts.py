@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Sweeps over three hosts (hosts.py): workers die or hang, hosts are cut off or die.
 
-Run by CTest within alone.sh. Prints recovery times; docs/faults.md has those of one run.
+Run by CTest within alone.sh. Prints recovery times.
 """
 
 import os

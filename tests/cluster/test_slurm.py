@@ -2,7 +2,7 @@
 """jobs/slurm/sweep.sbatch under a real Slurm with two nodes (slurm.py): normal end, time limits, killed workers,
 scancel, lost nodes. Results have the same bits as those of an undisturbed run.
 
-Run by CTest within alone.sh. Prints recovery times; docs/faults.md has those of one run.
+Run by CTest within alone.sh. Prints recovery times.
 """
 
 import glob
