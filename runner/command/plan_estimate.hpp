@@ -40,8 +40,8 @@ struct Estimate {
 
 Estimate estimate(const Plan& plan, const std::vector<Probe>& probes);
 
-/// Tasks per second that one master can send. A task takes 22 us of its CPU time with four workers. With one worker it
-/// takes 111 us, because the master wakes up for each task (tests/bench/bench_limits.py; docs/scale.md).
+/// Tasks per second that one master can send. A task takes 4 to 19 us of its CPU time with several workers. With one
+/// worker it takes 105 us, because the master wakes up for each task (tests/bench/bench_limits.py; docs/scale.md).
 inline constexpr double master_tasks_per_s = 10'000;
 
 /// The number of shards for which each master sends at most half of its maximum rate.
