@@ -21,7 +21,7 @@ MOST_TRIES = 5
 FINALISTS = 3
 MOST_ROUNDS = 4
 MOST_STEPS = 12
-SLOW = 30           # times the slowest direct solve that is of use: CG that takes longer is stopped
+SLOW = 30           # times the slowest direct solve that is of use: what takes longer is stopped
 SHORTEST_S = 2
 
 
@@ -40,7 +40,6 @@ class Search:
         self.axes = {kind: self.scene.axes(kind) for kind in OF_CG}
         _, apart = runs.reference(TUNING)
         self.levels = [level for level in LEVELS if verdicts.upper_bound(apart) <= level / 3]
-        self.limit_s = 0
 
     def time(self, setting, samples=None):
         return np.median(self.runs.of(setting, samples=samples or self.scene.few).time_s)
@@ -53,9 +52,12 @@ class Search:
         few = self.scene.few
         every, of_gauss_seidel = self.scene.steps()
         self.runs.measure([settings.direct(step) for step in every], samples=few)
+        useful = {level: self.useful_steps(level) for level in self.levels}
+        slowest = max((self.time(settings.direct(step)) for steps in useful.values() for step in steps), default=0)
+        limit_s = max(SHORTEST_S, SLOW * slowest * self.scene.job["time"]["duration_s"])
         self.runs.measure([settings.gauss_seidel(step, sweeps) for step in of_gauss_seidel for sweeps in settings.SWEEPS],
-                          samples=few)
-        self._search_ways(few)
+                          samples=few, limit_s=limit_s)
+        self._search_ways(useful, limit_s)
         places = {(level, kind): self.near(level, kind) for level in self.levels for kind in KINDS if kind != OWN}
         finalists = {}
         for begin in range(0, MOST_TRIES * CHEAPEST, CHEAPEST):
@@ -83,10 +85,7 @@ class Search:
         found = [step for step in every if self.may_pass(settings.direct(step), level)]
         return sorted(found, key=lambda step: self.time(settings.direct(step)))[:MOST_STEPS]
 
-    def _search_ways(self, few):
-        steps = {level: self.useful_steps(level) for level in self.levels}
-        slowest = max((self.time(settings.direct(step)) for some in steps.values() for step in some), default=0)
-        self.limit_s = max(SHORTEST_S, SLOW * slowest * self.scene.job["time"]["duration_s"])
+    def _search_ways(self, steps, limit_s):
         at = {(level, kind): Place(steps[level][0], self.axes[kind].first())
               for level in self.levels if steps[level] for kind in OF_CG}
         tried = [Place(place.step, way) for (_, kind), place in at.items() for way in self.axes[kind].screened()]
@@ -94,7 +93,7 @@ class Search:
             beside = {of: [Place(place.step, way) for way in self.axes[of[1]].beside(place.way)] +
                       [Place(step, place.way) for step in steps[of[0]]] for of, place in at.items()}
             self.runs.measure([place.setting() for place in tried + [one for some in beside.values() for one in some]],
-                              samples=few, limit_s=self.limit_s)
+                              samples=self.scene.few, limit_s=limit_s)
             tried += [place for some in beside.values() for place in some]
             moved = {(level, kind): self._cheapest(tried, level, kind) or place for (level, kind), place in at.items()}
             if moved == at:
