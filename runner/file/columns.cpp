@@ -240,7 +240,8 @@ std::vector<Column> all_columns() {
                  "timed solves for which a network ran, in the guess or the preconditioner's set-up; -1: not tried"),
       task_times("/timing/tasks/elapsed_s", &Timing::elapsed_s, none, "s", "wall time of the task, without writing"),
       task_times("/timing/tasks/steps_processor_s", &Timing::steps_processor_s, none, "s",
-                 "processor time of all steps, with what is only measured: nothing if record.norms is none"),
+                 "processor time of all steps but the first, which sets up solvers; with what is only measured: "
+                 "nothing if record.norms is none and record.solves summary"),
   };
 }
 

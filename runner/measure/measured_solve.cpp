@@ -109,7 +109,7 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
       record_(record),
       forcing_(static_cast<int>(scene.rods.size()), spec.solve.tolerance, spec.time.newton_tolerance),
       solvers_(scene.rods.size()) {
-  if (spec.solve.is_direct()) direct_.emplace(scene);
+  if (spec.solves_directly()) direct_.emplace(scene);
   for (std::size_t g = 0; g < spec.guesses.size(); ++g)
     if (spec.own_guess < 0 || static_cast<int>(g) == spec.own_guess)
       guesses_.push_back({g, is_zero(spec.guesses[g]), is_of_the_user(spec.guesses[g]),
@@ -174,8 +174,11 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
   delta_lambda = solvers.exact;
   if ((outcome == SolveOutcome::converged || outcome == SolveOutcome::iteration_limit) && !guesses_.empty()) {
     time(system, at, row, solvers);
-    if (spec_.own_guess >= 0 && system.largest_rhs() > rounding_level) {
-      delta_lambda = solvers.x;
+    if (spec_.own_guess >= 0) {
+      if (system.largest_rhs() > rounding_level)
+        delta_lambda = solvers.x;
+      else
+        delta_lambda.setZero();
       outcome = solvers.guesses.front().advanced.outcome;
     }
     accept(system, at, row, solvers, delta_lambda);

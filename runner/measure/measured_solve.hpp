@@ -67,7 +67,7 @@ class MeasuredSolve : public LinearSolve {
   const Scene& scene_;
   const TaskSpec& spec_;
   TaskRecord& record_;
-  std::optional<DirectSolve> direct_;  ///< if spec.solve.is_direct()
+  std::optional<DirectSolve> direct_;  ///< if spec.solves_directly()
   ForcingTerms forcing_;
   std::vector<Guess> guesses_;
   std::vector<std::unique_ptr<RodSolvers>> solvers_;  // created at a rod's first solve

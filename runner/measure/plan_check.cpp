@@ -123,7 +123,7 @@ struct Need {
   const char *for_what, *instead;
 };
 Need need(const TaskSpec& spec) {
-  if (spec.solve.is_direct())
+  if (spec.solves_directly())
     return {"solve", "a smaller scene, or method \"cg\" with \"reference\": \"cg\" (no factorisation)"};
   if (rod_parameters(spec.scene).contact) return {"scene.contact", "a smaller scene, or one without contact"};
   if (std::any_of(spec.guesses.begin(), spec.guesses.end(), is_oracle))

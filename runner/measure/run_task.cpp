@@ -68,7 +68,7 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
     const Stopwatch step_watch;
     const ProcessorStopwatch processor_watch;
     const StepReport report = stepper.step(*projection);
-    record.timing.steps_processor_s[0] += processor_watch.seconds();
+    if (step > 0) record.timing.steps_processor_s[0] += processor_watch.seconds();  // the first sets up solvers
     const auto row = static_cast<std::size_t>(step);
     record.timing.rest_s[row] = static_cast<float>(step_watch.seconds() - solve.take_elapsed_s());
     const SolveEffort effort = solve.take_effort();

@@ -142,6 +142,10 @@ struct TaskSpec {
   std::uint64_t seed =
       0;  ///< for guesses that draw random numbers; from the job's seed and the sample, shared by grid points
   double time_limit_s = 0;  ///< 0: none
+
+  /// Whether every system is also solved directly: to advance the rods, as the reference, or for its time. In a closed
+  /// loop with CG that records neither counts nor solves it would only take time.
+  bool solves_directly() const { return solve.is_direct() && (own_guess < 0 || output.counts || output.solves); }
 };
 
 }  // namespace rodsweep

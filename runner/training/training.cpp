@@ -63,7 +63,7 @@ Checkpoint Training::checkpoint() const {
 
 bool Training::step(bool stop) {
   const Stopwatch watch;
-  const ProcessorStopwatch processor_watch(CLOCK_PROCESS_CPUTIME_ID);  // with its threads
+  const ProcessorStopwatch processor_watch;
   const bool stops = exchange_.gather([&](const std::vector<Trainer::Shard>& own) { trainer_.compute(own); }, stop);
   const double loss = trainer_.update(exchange_.shards());
   epoch_loss_ += loss;

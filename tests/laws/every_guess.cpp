@@ -280,6 +280,7 @@ TEST_CASE("every guess moves the rods alike where nothing is counted, and says f
     const TaskRecord counted = record_of(plan, index), alone = record_of(plan_timed, index);
     CHECK(alone.steps.products == counted.steps.products);
     CHECK(alone.steps.kinetic_energy_j == counted.steps.kinetic_energy_j);
+    CHECK((plan.spec(index).solves_directly() && !plan_timed.spec(index).solves_directly()));
     CHECK(alone.timing.steps_processor_s[0] > 0);
     CHECK(alone.timing.steps_processor_s[0] < counted.timing.elapsed_s[0] + alone.timing.elapsed_s[0]);
     const auto own = static_cast<std::size_t>(index);

@@ -84,6 +84,12 @@ TEST_CASE("a step's effort is that of the solves that advanced it, also if nothi
     CHECK(timed.tasks.counted_all.iterations(0, own) == -1);
     CHECK(std::isnan(timed.tasks.counted_all.cg_ratio(0, own)));
   }
+  for (const char* norms : {"one", "none"})
+    for (const char* solves : {"all", "summary"}) {
+      job["record"] = {{"norms", norms}, {"solves", solves}};
+      const bool only_timed = norms == std::string("none") && solves == std::string("summary");
+      CHECK(plan_of(job).spec(0).solves_directly() == !only_timed);
+    }
   const TaskRecord direct = record_of(without("/guesses", with("/solve", R"({"method": "direct"})", five_steps("[]"))));
   for (std::size_t step = 0; step < steps; ++step) {
     CHECK(direct.steps.products[step] == 0);
