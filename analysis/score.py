@@ -2,13 +2,14 @@
 """How to simulate a scene to an error of the motion in the least time, and whether a guess helps (docs/score.md).
 
 Without an option, it prints the tables of analysis/results/score/NAME.json, with the figure if -o says where. The tables
-have, for every error, the cheapest setting of each kind: time of a simulated second, how many times as long as the
-cheapest kind, products with A, share of solves for which a network ran, error, number of settings tried.
+have, for every error, the cheapest setting of each kind: time of a simulated second, how many times as long as the kind
+that was the cheapest on the draws for tuning, products with A, share of solves for which a network ran, error, number of
+settings tried.
 
   --errors   looks for settings that may be the cheapest of their kind. It can be stopped, and goes on; other things may
              run beside it. Hours.
   --times    times these in one sitting, with nothing beside, and writes NAME.json. Minutes a scene.
-  --again    times the chosen settings on draws that were never used, and says which factors are outside their intervals.
+  --again    times the chosen settings on draws that were never used, and says which factors lie within their intervals.
 
 With a guess in Python, FILE.py, the script simulates the chosen settings of CG with this guess, times them in one sitting
 with the chosen ones of all kinds, and shows its row beside the others'.
@@ -63,7 +64,10 @@ def say(text):
 def main():
     options = arguments()
     guess = options.scenes.pop(0) if options.scenes and options.scenes[0].endswith(".py") else None
-    chosen = [scenes.Scene(name, options.root) for name in options.scenes or scenes.names(options.root)]
+    root = os.path.abspath(options.root)
+    chosen = [scenes.Scene(name, root) for name in options.scenes or scenes.names(root)]
+    if options.errors or options.times:
+        os.makedirs(os.path.dirname(chosen[0].measured("")), exist_ok=True)    # fails now rather than after hours
     if guess:
         for scene in chosen:
             scored = own_guess.scored(scene, measured(scene), guess, options.inputs, options.samples, options.work, say)
@@ -95,26 +99,29 @@ def report(candidates):
 
 
 def time_all(scene, work, workers):
-    runs = Runs(scene, work, workers, say)
+    """A sitting that was held for these candidates is not repeated: then errors are computed, which may take long."""
+    runs = Runs(scene, work, workers, say, complete=True)
     search = Search(runs)
-    held = sitting.Sitting(scene, work, say).hold(search.run())
-    sitting.write(os.path.join(work, f"{scene.name}_times.json"), held)
-    chosen, times = sitting.of(held)
+    candidates, path = search.run(), os.path.join(work, f"{scene.name}_times.json")
+    held = sitting.read(path)
+    if held.get("candidates") != sitting.listed(candidates):
+        held = sitting.Sitting(scene, work, say).hold(candidates)
+        sitting.write(path, held)
+    chosen, times = sitting.chosen_and_times(held)
     runs.measure(times, scenes.TEST)
-    scored = Scored(scene.name, scene.title, held["runs"][0]["revision"], held["runs"][-1]["end"][:10], search.reference(),
-                    search.tried(), search.levels, answers.training_minutes(scene.root, chosen.values()),
+    scored = Scored(scene.name, scene.title, held["runs"][0]["revision"], held["runs"][-1]["end"][:10], search.reference,
+                    search.tried(), search.levels,
+                    answers.training_minutes(scene.root, [setting for setting, _ in chosen.values()]),
                     answers.answers_of(chosen, times, runs))
-    os.makedirs(os.path.dirname(scene.measured("")), exist_ok=True)
     scored.write(scene.measured(".json"))
     print("\n".join(answers.table(scored)), flush=True)
 
 
 def time_again(scene, known, work, workers):
-    """Prints the factors of a scene, those on draws that were never used, and whether the intervals have a number in
-    common."""
+    """Prints the factors of a scene, and those on draws that were never used."""
     runs = Runs(scene, work, workers, say)
-    chosen = {(answer.level, answer.kind): answer.setting for answer in known.answers}
-    times = sitting.Sitting(scene, work, say).repeated(chosen.values(), scenes.AGAIN, scene.samples)
+    chosen = {(answer.level, answer.kind): (answer.setting, answer.tuning_s) for answer in known.answers}
+    times = sitting.Sitting(scene, work, say).repeated([setting for setting, _ in chosen.values()], scenes.AGAIN, scene.samples)
     runs.measure(times, scenes.AGAIN)
     again = replace(known, answers=answers.answers_of(chosen, times, runs, scenes.AGAIN))
     print("\n".join(answers.comparison(known, again)), flush=True)

@@ -127,8 +127,8 @@ class Inputs:
         shutil.copy(SOURCE / "jobs" / "score" / "bending_rod_draws.json", root / "jobs" / "score" / "rod_draws.json")
         measured = root / "analysis" / "results" / "score" / "rod.json"
         measured.parent.mkdir(parents=True)
-        some = [answers.Answer(0.01, kind, settings.direct(settings.Step(0.01 * time, "bdf2")), np.full(5, 0.005), 0, 0,
-                               np.full((1, 3, 5), time)) for kind, time in (("direct solve", 1), ("CG, Jacobi", 2))]
+        some = [answers.Answer(0.01, kind, settings.direct(settings.Step(0.01 * time, "bdf2")), time, np.full((1, 5), 0.005),
+                               0, 0, np.full((1, 3, 5), time)) for kind, time in (("direct solve", 1), ("CG, Jacobi", 2))]
         answers.Scored("rod", "rod", "r", "2026-11-28", {}, {}, [0.01], {"rods": [1]}, some).write(measured)
 
     def job(self, name, **changes):

@@ -1,7 +1,8 @@
 """What the score says of a scene: NAME.json, from the search, the sitting and the errors on the draws for testing.
 
-An answer is a kind at an error: its setting, error, times, and the factor of its time over that of the cheapest kind. Both
-are of the draws for testing. A kind whose setting does not keep to the error there has no factor.
+An answer is a kind at an error: its setting, error, times, and the factor of its time over that of the kind that was the
+cheapest on the draws for tuning. Errors, times and factors are of the draws for testing. A kind whose setting does not keep
+to the error there has no factor. If the cheapest does not, the next cheapest takes its place.
 """
 
 import json
@@ -11,13 +12,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rodsweep.reading import job_paths, modelfile, texts
+from rodsweep.reading.errors import SweepFileError
 from rodsweep.scoring import verdicts
 from rodsweep.scoring.scenes import TEST
 from rodsweep.scoring.settings import KINDS, OWN, Setting
 from rodsweep.writing import outputs
 
-PROTOCOL = 1
-FASTEST, EQUAL, SLOWER, UNDECIDED = "cheapest", "equal", "slower", "not told apart"
+PROTOCOL = 2
+BASE, EQUAL, SLOWER, FASTER, UNDECIDED = "the base", "equal", "slower", "faster", "not told apart"
+PRODUCTS_TO = 1e-3      # relative: those of timed simulations are those of the ones with errors
 
 
 @dataclass(frozen=True)
@@ -25,10 +28,11 @@ class Answer:
     level: float
     kind: str
     setting: Setting
-    error: np.ndarray       # [draw], of several trainings the median
+    tuning_s: float         # median time on the draws for tuning
+    error: np.ndarray       # [training, draw]
     products: float         # for a simulated second
     network: float          # share of solves for which a network ran
-    time_s: np.ndarray      # [training, repetition, draw]
+    time_s: np.ndarray      # [training, repetition, draw], NaN where a simulation failed
     factor: verdicts.Factor = None
     verdict: str = ""
 
@@ -38,22 +42,27 @@ class Answer:
 
     @property
     def time(self):
-        return float(np.exp(np.log(self.time_s).mean()))
+        return float(np.exp(np.nanmean(np.log(self.time_s))))
 
     def as_json(self):
         return {"level": self.level, "kind": self.kind, "text": self.setting.text(), **self.setting.as_json(),
-                "error": [_short(value, 4) for value in self.error], "products": _short(self.products, 4),
-                "network": _short(self.network, 3), "time_s": np.vectorize(lambda v: _short(v, 5))(self.time_s).tolist()}
+                "tuning_s": _short(self.tuning_s, 4), "error": _listed(self.error, 4), "products": _short(self.products, 4),
+                "network": _short(self.network, 3), "time_s": _listed(self.time_s, 5)}
 
     @classmethod
     def from_json(cls, found):
-        error = np.array([np.inf if value is None else value for value in found["error"]])
-        return cls(found["level"], found["kind"], Setting.from_json(found), error, found["products"], found["network"],
-                   np.array(found["time_s"]))
+        error = np.array(found["error"], dtype=float)
+        error[np.isnan(error)] = np.inf
+        return cls(found["level"], found["kind"], Setting.from_json(found), found["tuning_s"], error, found["products"],
+                   found["network"], np.array(found["time_s"], dtype=float))
 
 
 def _short(value, digits):
     return float(f"{value:.{digits}g}") if np.isfinite(value) else None
+
+
+def _listed(values, digits):
+    return [_listed(part, digits) for part in values] if np.ndim(values) else _short(values, digits)
 
 
 @dataclass(frozen=True)
@@ -83,19 +92,26 @@ class Scored:
     def read(cls, path):
         with open(path, encoding="utf-8") as file:
             found = json.load(file)
-        found.pop("protocol")
+        if found.pop("protocol") != PROTOCOL:
+            raise SweepFileError(f"{path} is of another version of the rules than {PROTOCOL} (docs/score.md)")
         answers = [Answer.from_json(entry) for entry in found.pop("answers")]
         return cls(**found, answers=answers)
 
 
 def answers_of(chosen, times, runs, draws=TEST):
-    """Those of a sitting ({(level, kind): Setting}, {Setting: [repetition, draw]}), with errors of its draws."""
+    """Those of a sitting ({(level, kind): (Setting, its time on the draws for tuning)}, {Setting: [repetition, 2, draw]}),
+    with errors of its draws. Raises SweepFileError if the timed simulations are not those that gave the errors."""
     made = []
-    for (level, kind), setting in chosen.items():
-        of = [runs.of(training, draws, times[training].shape[1]) for training in setting.trainings()]
-        made.append(Answer(level, kind, setting, np.median([one.error for one in of], axis=0),
-                           float(np.median([one.products for one in of])), float(np.mean([one.network for one in of])),
-                           np.array([times[training] for training in setting.trainings()])))
+    for (level, kind), (setting, tuning_s) in chosen.items():
+        of = [runs.results(training, draws, times[training].shape[-1]) for training in setting.trainings()]
+        timed = np.array([times[training] for training in setting.trainings()])
+        for one, products in zip(of, timed[:, :, 1]):
+            ran = np.isfinite(one.error)
+            if not np.allclose(products[:, ran], one.products[ran], rtol=PRODUCTS_TO):
+                raise SweepFileError(f"{setting.text()} took other products when it was timed than when it gave its errors")
+        made.append(Answer(level, kind, setting, tuning_s, np.array([one.error for one in of]),
+                           float(np.nanmedian([one.products for one in of])), float(np.nanmean([one.network for one in of])),
+                           timed[:, :, 0]))
     return made
 
 
@@ -104,19 +120,18 @@ def judged(answers):
     kept = {kind: answer for kind, answer in answers.items() if answer.kept}
     if not kept:
         return answers
-    best = min(kept, key=lambda kind: kept[kind].time)
-    factors = {kind: verdicts.factor(answer.time_s, kept[best].time_s) for kind, answer in kept.items()
-               if answer.setting != kept[best].setting}
+    base = kept[min(kept, key=lambda kind: kept[kind].tuning_s)]
+    factors = {kind: verdicts.factor(answer.time_s, base.time_s) for kind, answer in kept.items()
+               if answer.setting != base.setting}
     sure = verdicts.holm({kind: factor.p for kind, factor in factors.items()})
-    made = {}
-    for kind, answer in answers.items():
+    made = dict(answers)
+    for kind, answer in kept.items():
         factor = factors.get(kind)
-        if kind not in kept:
-            made[kind] = answer
-        elif factor is None:    # its setting is the cheapest
-            made[kind] = replace(answer, factor=verdicts.Factor(1, 1, 1, 1), verdict=FASTEST)
+        if factor is None:
+            made[kind] = replace(answer, factor=verdicts.Factor(1, 1, 1, 1), verdict=BASE)
         else:
-            verdict = EQUAL if factor.equal() else SLOWER if sure[kind] < 1 - verdicts.LEVEL else UNDECIDED
+            differs = SLOWER if factor.value > 1 else FASTER
+            verdict = EQUAL if factor.equal() else differs if sure[kind] < 1 - verdicts.LEVEL else UNDECIDED
             made[kind] = replace(answer, factor=factor, verdict=verdict)
     return made
 
@@ -139,10 +154,10 @@ def table(scored):
     lines = []
     for level in scored.levels:
         of = scored.at(level)
-        rows = [[f"{scored.title}, error {100 * level:g} %", "ms/s", "÷ cheapest", "95 %", "verdict", "products/s", "network",
+        rows = [[f"{scored.title}, error {100 * level:g} %", "ms/s", "÷ base", "95 %", "verdict", "products/s", "network",
                  "error", "tried", "setting"]]
         rows += [[kind, *_cells(of[kind]), str(scored.tried.get(kind, "-")), of[kind].setting.text()] if kind in of else
-                 [kind, *["-"] * 7, str(scored.tried.get(kind, "-")), "none keeps to it"]
+                 [kind, *["-"] * 7, str(scored.tried.get(kind, "-")), "none was found"]
                  for kind in KINDS if kind in of or kind != OWN]
         lines += [*texts.aligned(rows), ""]
     if scored.training_minutes:
@@ -154,26 +169,30 @@ def table(scored):
 
 
 def comparison(known, again):
-    """Lines: the factors of the same settings over the same cheapest kind, on two sets of draws."""
-    rows = [[known.title, "error", "÷ cheapest", "95 %", "again", "95 %", ""]]
+    """Lines: the factors of the same settings over the same base, on two sets of draws; whether the second is within the
+    interval of the first, and whether both settings still keep to the error."""
+    rows = [[known.title, "error", "÷ base", "95 %", "again", "95 %", ""]]
     for level in known.levels:
         before, after = known.at(level), {answer.kind: answer for answer in again.answers if answer.level == level}
-        best = next((kind for kind, answer in before.items() if answer.verdict == FASTEST), None)
+        base = next((kind for kind, answer in before.items() if answer.verdict == BASE), None)
         for kind, answer in before.items():
-            if answer.factor and answer.verdict != FASTEST:
-                found = verdicts.factor(after[kind].time_s, after[best].time_s)
-                apart = found.low > answer.factor.high or found.high < answer.factor.low
+            if answer.factor and answer.verdict != BASE:
+                found = verdicts.factor(after[kind].time_s, after[base].time_s)
                 cells = [text for of in (answer.factor, found)
                          for text in (texts.short_text(of.value, 3), f"{of.low:.3g} to {of.high:.3g}")]
-                rows.append([kind, f"{100 * level:g} %", *cells, "differs" if apart else "agrees"])
+                outside = "apart" if found.low > answer.factor.high or found.high < answer.factor.low else "intervals overlap"
+                said = "within" if answer.factor.low <= found.value <= answer.factor.high else outside
+                lost = [of for of in (kind, base) if not after[of].kept]
+                rows.append([kind, f"{100 * level:g} %", *cells, said + "".join(f", {of} does not keep" for of in lost)])
     return texts.aligned(rows)
 
 
 def _cells(answer):
     failed = np.count_nonzero(~np.isfinite(answer.error))
-    said = texts.short_text(100 * float(np.median(answer.error)), 2) + " %" + (f", {failed} failed" if failed else "")
+    said = texts.short_text(100 * float(np.median(np.median(answer.error, axis=0))), 2) + " %"
+    said += f", {failed} of {answer.error.size} failed" if failed else ""
     factor, of = ["-"] * 2, answer.factor
     if of:
-        factor = [texts.short_text(of.value, 3), "-" if answer.verdict == FASTEST else f"{of.low:.3g} to {of.high:.3g}"]
+        factor = [texts.short_text(of.value, 3), "-" if answer.verdict == BASE else f"{of.low:.3g} to {of.high:.3g}"]
     return [texts.short_text(1e3 * answer.time, 3), *factor, answer.verdict or "does not keep to it",
             texts.short_text(answer.products, 3), f"{100 * answer.network:.0f} %", said]

@@ -1,12 +1,15 @@
 """A guess in Python beside the settings of the score: in those of CG from zero, a classical guess and one call of a
-network it replaces theirs. All are simulated on the first draws for testing and timed in one sitting."""
+network it replaces theirs. Its setting is chosen on draws for tuning, as theirs were. Then all are simulated on the first
+draws for testing and timed in one sitting."""
 
 import os
 from dataclasses import replace
 
+import numpy as np
+
 from rodsweep.scoring import answers, sitting
 from rodsweep.scoring.runs import Runs
-from rodsweep.scoring.scenes import TEST
+from rodsweep.scoring.scenes import TEST, TUNING
 from rodsweep.scoring.settings import CALL, CLASSICAL, OWN, ZERO, canonical
 
 REPLACED = (ZERO, CLASSICAL, CALL)
@@ -14,21 +17,20 @@ REPLACED = (ZERO, CLASSICAL, CALL)
 
 def scored(scene, known, path, inputs, samples, work, show):
     """`known` (answers.Scored), on `samples` draws, with the cheapest setting of this guess at each error."""
+    samples = min(samples, scene.samples)
     entry = {"file": os.path.abspath(path), **({"inputs": [os.path.abspath(name) for name in inputs]} if inputs else {})}
-    chosen = {(answer.level, answer.kind): answer.setting for answer in known.answers}
-    own = {}
-    for (level, kind), setting in chosen.items():
-        if kind in REPLACED:
-            own.setdefault(level, []).append(replace(setting, guess=canonical({"python": entry})))
-    # A guess may have changed since: nothing of it is remembered.
-    runs = Runs(scene, os.path.join(work, "own"), os.cpu_count(), show)
-    runs.known = {key: value for key, value in runs.known.items() if OWN not in key[0].kinds()}
-    every = [*chosen.values(), *(setting for some in own.values() for setting in some)]
-    runs.measure([training for setting in every for training in setting.trainings()], TEST, samples)
-    times = sitting.Sitting(scene, work, show).repeated(every, TEST, samples)
-    found = answers.answers_of(chosen, times, runs)
-    for level, some in own.items():
-        of = answers.answers_of({(level, k): setting for k, setting in enumerate(some)}, times, runs)
-        kept = [answer for answer in of if answer.kept] or of
-        found.append(replace(min(kept, key=lambda answer: answer.time), kind=OWN))
-    return replace(known, answers=found)
+    runs = Runs(scene, work, os.cpu_count(), show)
+    chosen = {(answer.level, answer.kind): (answer.setting, answer.tuning_s) for answer in known.answers}
+    for level in known.levels:
+        own = [replace(answer.setting, guess=canonical({"python": entry})) for answer in known.answers
+               if answer.level == level and answer.kind in REPLACED]
+        runs.measure(own, TUNING, samples)
+        of = {setting: runs.results(setting, TUNING, samples) for setting in own}
+        kept = [setting for setting in own if np.median(of[setting].error) <= level] or own
+        if kept:
+            best = min(kept, key=lambda setting: np.median(of[setting].time_s))
+            chosen[level, OWN] = best, float(np.median(of[best].time_s))
+    settings = [setting for setting, _ in chosen.values()]
+    runs.measure([training for setting in settings for training in setting.trainings()], TEST, samples)
+    times = sitting.Sitting(scene, work, show).repeated(settings, TEST, samples)
+    return replace(known, answers=answers.answers_of(chosen, times, runs))

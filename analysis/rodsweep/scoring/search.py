@@ -1,10 +1,11 @@
 """Looks for the cheapest setting of each kind at each error, on the tuning draws.
 
 First all steps of the grid with the direct solve, and all of Gauss-Seidel, on a few draws. Then CG: a search for every kind
-and error goes along the axes (settings.Axes) from the cheapest step at which the direct solve may keep to the error. It
-tries every value of every axis, moves to the cheapest that may keep to the error, and ends where no axis has a cheaper
-one. Of all that was tried, the CHEAPEST that may keep to the error run on all draws; if none of them is admitted there,
-the next ones. Those that are admitted, and take at most NEAR times as long as the first, are candidates for a sitting.
+and error goes along the axes: those of settings.Axes, and the fields of a step, among the steps whose direct solve may
+keep to the error. It tries every value of every axis, moves to the cheapest that may keep to the error, and ends where
+no axis has a cheaper one, or after MOST_ROUNDS. Of all that was tried, the CHEAPEST that may keep to the error run on all
+draws; if none of them is admitted there, the next ones. Those that are admitted, and take at most NEAR times as long as
+the cheapest of them, are candidates for a sitting.
 """
 
 from dataclasses import dataclass
@@ -17,10 +18,9 @@ from rodsweep.scoring.settings import KINDS, OF_CG, OWN, Way
 
 NEAR = 2
 CHEAPEST = 6
-MOST_TRIES = 5
+MOST_TRIES = 10
 FINALISTS = 3
 MOST_ROUNDS = 4
-MOST_STEPS = 12
 SLOW = 30           # times the slowest direct solve that is of use: what takes longer is stopped
 SHORTEST_S = 2
 
@@ -38,81 +38,78 @@ class Search:
     def __init__(self, runs):
         self.runs, self.scene = runs, runs.scene
         self.axes = {kind: self.scene.axes(kind) for kind in OF_CG}
-        _, apart = runs.reference(TUNING)
-        self.levels = [level for level in LEVELS if verdicts.upper_bound(apart) <= level / 3]
-
-    def time(self, setting, samples=None):
-        return np.median(self.runs.of(setting, samples=samples or self.scene.few).time_s)
-
-    def may_pass(self, setting, level):
-        return verdicts.may_pass(self.runs.of(setting, samples=self.scene.few).error, level)
+        self.reference = {draws: float(f"{verdicts.upper_bound(runs.reference(draws)[1]):.3g}") for draws in (TUNING, TEST)}
+        self.levels = [level for level in LEVELS if max(self.reference.values()) <= level / 3]
 
     def run(self):
         """{(level, kind): candidates}, cheapest first."""
         few = self.scene.few
         every, of_gauss_seidel = self.scene.steps()
         self.runs.measure([settings.direct(step) for step in every], samples=few)
-        useful = {level: self.useful_steps(level) for level in self.levels}
+        useful = {level: [step for step in every if self.may_keep(settings.direct(step), level)] for level in self.levels}
         slowest = max((self.time(settings.direct(step)) for steps in useful.values() for step in steps), default=0)
         limit_s = max(SHORTEST_S, SLOW * slowest * self.scene.job["time"]["duration_s"])
         self.runs.measure([settings.gauss_seidel(step, sweeps) for step in of_gauss_seidel for sweeps in settings.SWEEPS],
                           samples=few, limit_s=limit_s)
-        self._search_ways(useful, limit_s)
-        places = {(level, kind): self.near(level, kind) for level in self.levels for kind in KINDS if kind != OWN}
-        finalists = {}
+        self._search_ways({level: steps for level, steps in useful.items() if steps}, limit_s)
+        left = {(level, kind): self.promising(level, kind) for level in self.levels for kind in KINDS if kind != OWN}
+        found = {place: [] for place in left}
         for begin in range(0, MOST_TRIES * CHEAPEST, CHEAPEST):
-            some = {of: near[begin:begin + CHEAPEST] for of, near in places.items() if not finalists.get(of)}
-            self.runs.measure([training for near in some.values() for setting in near for training in setting.trainings()])
-            finalists |= {(level, kind): self.finalists(level, near) for (level, kind), near in some.items()}
-        return {of: finalists[of] for of in places}
+            batch = {place: some[begin:begin + CHEAPEST] for place, some in left.items() if not found[place]}
+            self.runs.measure([training for some in batch.values() for setting in some for training in setting.trainings()])
+            found |= {(level, kind): self.finalists(level, some) for (level, kind), some in batch.items()}
+        return found
 
-    def near(self, level, kind):
-        """Settings that may keep to the level, cheapest first."""
-        return sorted((s for s in self.found() if kind in s.kinds() and self.may_pass(s, level)), key=self.time)
+    def promising(self, level, kind):
+        """The settings of a kind that may keep to a level, cheapest first."""
+        return sorted((s for s in self.tried_settings() if kind in s.kinds() and self.may_keep(s, level)), key=self.time)
 
-    def finalists(self, level, near):
-        kept = [setting for setting in near if self.time(setting) <= NEAR * self.time(near[0])
-                and verdicts.admitted(self.errors(setting), level)]
-        return sorted(kept, key=lambda setting: self.time(setting, self.scene.samples))[:FINALISTS]
+    def finalists(self, level, some):
+        kept = sorted((s for s in some if verdicts.admitted(self.errors(s), level)), key=self.time_on_all)
+        return [s for s in kept if self.time_on_all(s) <= NEAR * self.time_on_all(kept[0])][:FINALISTS]
+
+    def time(self, setting):
+        return np.median(self.runs.results(setting, samples=self.scene.few).time_s)
+
+    def time_on_all(self, setting):
+        return np.median(np.mean([self.runs.results(training).time_s for training in setting.trainings()], axis=0))
+
+    def may_keep(self, setting, level):
+        return verdicts.may_keep(self.runs.results(setting, samples=self.scene.few).error, level)
 
     def errors(self, setting):
-        """On all draws; of several trainings the median, so that one that fails is out-voted."""
-        return np.median([self.runs.of(other).error for other in setting.trainings()], axis=0)
+        """[training, draw]"""
+        return np.array([self.runs.results(training).error for training in setting.trainings()])
 
-    def useful_steps(self, level):
-        """Those with which the direct solve may keep to the level, cheapest first."""
-        every, _ = self.scene.steps()
-        found = [step for step in every if self.may_pass(settings.direct(step), level)]
-        return sorted(found, key=lambda step: self.time(settings.direct(step)))[:MOST_STEPS]
-
-    def _search_ways(self, steps, limit_s):
-        at = {(level, kind): Place(steps[level][0], self.axes[kind].first())
-              for level in self.levels if steps[level] for kind in OF_CG}
-        tried = [Place(place.step, way) for (_, kind), place in at.items() for way in self.axes[kind].screened()]
+    def _search_ways(self, useful, limit_s):
+        now = {(level, kind): Place(min(steps, key=lambda step: self.time(settings.direct(step))), self.axes[kind].first())
+               for level, steps in useful.items() for kind in OF_CG}
+        tried = [Place(place.step, way) for (_, kind), place in now.items() for way in self.axes[kind].screened()]
         for _ in range(MOST_ROUNDS):
-            beside = {of: [Place(place.step, way) for way in self.axes[of[1]].beside(place.way)] +
-                      [Place(step, place.way) for step in steps[of[0]]] for of, place in at.items()}
-            self.runs.measure([place.setting() for place in tried + [one for some in beside.values() for one in some]],
-                              samples=self.scene.few, limit_s=limit_s)
-            tried += [place for some in beside.values() for place in some]
-            moved = {(level, kind): self._cheapest(tried, level, kind) or place for (level, kind), place in at.items()}
-            if moved == at:
+            tried += [other for (level, kind), place in now.items() for other in self._beside(place, kind, useful[level])]
+            self.runs.measure([place.setting() for place in tried], samples=self.scene.few, limit_s=limit_s)
+            moved = {(level, kind): self._cheapest(tried, level, kind) or place for (level, kind), place in now.items()}
+            if moved == now:
                 break
-            at = moved
+            now = moved
+
+    def _beside(self, place, kind, useful):
+        ways = [Place(place.step, way) for way in self.axes[kind].beside(place.way)]
+        return ways + [Place(step, place.way) for step in useful if _fields_apart(step, place.step) <= 1]
 
     def _cheapest(self, places, level, kind):
-        found = [place for place in dict.fromkeys(places)
-                 if kind in place.setting().kinds() and self.may_pass(place.setting(), level)]
-        return min(found, key=lambda place: self.time(place.setting()), default=None)
-
-    def reference(self):
-        """{draws: bound of the median error of the reference}"""
-        return {draws: float(f"{verdicts.upper_bound(self.runs.reference(draws)[1]):.3g}") for draws in (TUNING, TEST)}
+        may = [place for place in dict.fromkeys(places)
+               if kind in place.setting().kinds() and self.may_keep(place.setting(), level)]
+        return min(may, key=lambda place: self.time(place.setting()), default=None)
 
     def tried(self):
         """{kind: number of settings}"""
-        return {kind: sum(kind in setting.kinds() for setting in self.found()) for kind in KINDS if kind != OWN}
+        return {kind: sum(kind in setting.kinds() for setting in self.tried_settings()) for kind in KINDS if kind != OWN}
 
-    def found(self):
+    def tried_settings(self):
         """All settings that ran on a few draws."""
         return [setting for setting, draws, samples in self.runs.known if draws == TUNING and samples == self.scene.few]
+
+
+def _fields_apart(step, other):
+    return sum(getattr(step, name) != getattr(other, name) for name in ("step_s", "integrator", "newton", "balance", "contact"))

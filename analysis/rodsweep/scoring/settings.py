@@ -25,7 +25,6 @@ DIRECT, ZERO, CLASSICAL, CALL, FACTORS, JACOBI, GAUSS_SEIDEL, OWN = KINDS = (
     "direct solve", "CG from zero", "CG, classical guess", "CG, one call", "CG, learned preconditioner", "CG, Jacobi",
     "Gauss-Seidel", "your guess")
 OF_CG = (ZERO, CLASSICAL, CALL, FACTORS, JACOBI)
-LEARNED = (CALL, FACTORS)
 
 
 @dataclass(frozen=True, order=True)
@@ -67,7 +66,7 @@ class Setting:
     def of_training(self, number):
         """With our models of another training, which have -2 or -3 in their names."""
         def other(path):
-            return re.sub(rf"({OURS}/[\w-]+?)(-\d)?\.h5$", rf"\1{f'-{number}' if number > 1 else ''}.h5", path)
+            return re.sub(rf"((?:^|/){OURS}/[\w-]+?)(-\d)?\.h5$", rf"\1{f'-{number}' if number > 1 else ''}.h5", path)
         solve, guess = (canonical(job_paths.placed(json.loads(part), other, ("model",))) for part in (self.solve, self.guess))
         return replace(self, solve=solve, guess=guess)
 

@@ -1,9 +1,10 @@
 """Times the candidates of a scene, all in one sitting: NAME_times.json.
 
-One worker simulates, nothing else may run. First the candidates on the first draws for tuning: the cheapest of each kind
-at each error is chosen there. Then the chosen ones, with all trainings, on all draws for testing, REPETITIONS times, each
-time in another random order. A time is the processor time of all steps, whole. Times of different sittings are not
-compared: a sitting that took longer than LONGEST_S, or went on on another machine or with another program, is refused.
+One worker simulates, nothing else may run. First the candidates, with all trainings, on the first draws for tuning: the
+cheapest of each kind at each error is chosen there. Then the chosen ones on all draws for testing, REPETITIONS times. Each
+repetition has settings in another order, and runs in PARTS parts, each with some draws of every setting. A time is
+the processor time of all steps but the first, whole. Times of different sittings are not compared: a sitting that took
+longer than LONGEST_S, or went on on another machine or with another program, is refused.
 """
 
 import datetime
@@ -16,15 +17,16 @@ import numpy as np
 
 from rodsweep.reading.errors import SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
-from rodsweep.scoring.runs import point_of, run_quietly
+from rodsweep.scoring.runs import effort, run_quietly
 from rodsweep.scoring.scenes import TEST, TUNING
 from rodsweep.scoring.settings import Setting
 from rodsweep.writing import outputs
 
 REPETITIONS = 3
+PARTS = 4
 FOR_CHOICE = 10         # draws
 LONGEST_S = 3600
-SAME = ("host", "revision")
+SAME = ("host", "revision", "versions", "petsc_options")
 
 
 class Sitting:
@@ -35,48 +37,58 @@ class Sitting:
         self.runs = []      # rows of /runs, of all jobs
 
     def times(self, settings, draws, samples, order):
-        """{setting: [draw] seconds of a simulated second} of one repetition; `order` is the seed of its order."""
+        """{setting: [2, draw]} of one repetition: seconds, and products, of a simulated second; NaN for simulations that
+        failed. `order` is the seed of its order."""
         some = list(dict.fromkeys(settings))
-        random.Random(order).shuffle(some)
-        self.show(f"{self.scene.name}: {len(some)} settings on {samples} draws for {draws}, timed")
-        with tempfile.TemporaryDirectory(dir=self.work) as folder:
-            path, given = (os.path.join(folder, f"times.{kind}") for kind in ("h5", "json"))
-            job = self.scene.job_of(some, draws, samples, frames=False)
-            with open(given, "w", encoding="utf-8") as file:
-                json.dump(job, file)
-            run_quietly("run", given, "-o", path, renamed={given: job["name"]})
-            with SweepFile(path) as file:
-                self.runs += file.runs()
-                require_one(self.runs)
-                return times_in(file, some)
+        found = {setting: np.full((2, samples), np.nan) for setting in some}
+        random.Random(order).shuffle(some)    # not for each part: which tasks are in it depends on the order
+        for part in range(1, PARTS + 1):
+            self.show(f"{self.scene.name}: {len(some)} settings on {samples} draws for {draws}, timed, part {part} of {PARTS}")
+            with tempfile.TemporaryDirectory(dir=self.work) as folder:
+                path, given = (os.path.join(folder, f"times.{kind}") for kind in ("h5", "json"))
+                job = self.scene.job_of(some, draws, samples, frames=False)
+                with open(given, "w", encoding="utf-8") as file:
+                    json.dump(job, file)
+                run_quietly("run", given, "-o", path, "--shard", f"{part}/{PARTS}", renamed={given: job["name"]})
+                with SweepFile(path) as file:
+                    self.runs += file.runs()
+                    require_one(self.runs)
+                    for task in np.flatnonzero(file.ok):
+                        found[some[file.point[task] // samples]][:, file.sample[task]] = effort(file, task)
+        return found
 
     def hold(self, candidates):
-        """What NAME_times.json has: {"runs", "chosen": [{"level", "kind", "setting"}], "times": [{"setting", "time_s"
-        [repetition][draw]}]}. `candidates`: {(level, kind): settings}."""
-        every = [setting for some in candidates.values() for setting in some]
+        """What NAME_times.json has: "candidates", "runs", "chosen": [{"level", "kind", "tuning_s", setting}], "times":
+        [{setting, "time_s" and "products" [repetition][draw]}]. `candidates`: {(level, kind): settings}."""
+        every = [training for some in candidates.values() for setting in some for training in setting.trainings()]
         first = self.times(every, TUNING, min(FOR_CHOICE, self.scene.samples), 0)
-        chosen = {of: min(some, key=lambda s: np.median(first[s])) for of, some in candidates.items() if some}
+
+        def tuned(setting):
+            return float(np.nanmedian(np.mean([first[training][0] for training in setting.trainings()], axis=0)))
+
+        chosen = {of: min(some, key=tuned) for of, some in candidates.items() if some}
         times = self.repeated(chosen.values(), TEST, self.scene.samples)
-        return {"runs": [{name: str(run[name]) for name in ("begin", "end", *SAME)} for run in self.runs],
-                "chosen": [{"level": level, "kind": kind, **setting.as_json()} for (level, kind), setting in chosen.items()],
-                "times": [{**setting.as_json(), "time_s": [[float(f"{value:.5g}") for value in row] for row in of]}
+        return {"candidates": listed(candidates),
+                "runs": [{name: str(run[name]) for name in ("begin", "end", *SAME)} for run in self.runs],
+                "chosen": [{"level": level, "kind": kind, "tuning_s": tuned(setting), **setting.as_json()}
+                           for (level, kind), setting in chosen.items()],
+                "times": [{**setting.as_json(), "time_s": _rounded(of[:, 0]), "products": _rounded(of[:, 1])}
                           for setting, of in times.items()]}
 
     def repeated(self, settings, draws, samples):
-        """{setting: [repetition, draw]} of settings, with all trainings."""
+        """{setting: [repetition, 2, draw]} of settings, with all trainings."""
         every = list(dict.fromkeys(training for setting in settings for training in setting.trainings()))
         found = [self.times(every, draws, samples, repetition) for repetition in range(1, REPETITIONS + 1)]
         return {setting: np.array([of[setting] for of in found]) for setting in every}
 
 
-def times_in(file, settings):
-    """{setting: [draw]} of a file whose points are the settings."""
-    seconds, step = file.h5["/timing/tasks/steps_processor_s"][:], file.parameter("time.step_s").values
-    done = file.h5["/tasks/steps_done"][:]
-    made = {setting: np.full(file.sample.max() + 1, np.nan) for setting in settings}
-    for task in range(file.task_count):
-        made[settings[point_of(file, task)]][file.sample[task]] = seconds[task] / max(1, done[task]) / step[task]
-    return made
+def listed(candidates):
+    return [{"level": level, "kind": kind, "settings": [setting.as_json() for setting in some]}
+            for (level, kind), some in candidates.items()]
+
+
+def _rounded(rows):
+    return [[float(f"{value:.5g}") if np.isfinite(value) else None for value in row] for row in rows]
 
 
 def require_one(runs):
@@ -94,12 +106,21 @@ def _moment(text):
     return datetime.datetime.fromisoformat(text.replace("Z", "+00:00"))
 
 
+def read(path):
+    """What NAME_times.json has; empty without the file."""
+    if not os.path.exists(path):
+        return {}
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
 def write(path, held):
     outputs.write(path, json.dumps(held) + "\n")
 
 
-def of(held):
-    """{(level, kind): Setting}, {Setting: [repetition, draw]} of what hold() gave."""
+def chosen_and_times(held):
+    """{(level, kind): (Setting, seconds on the tuning draws)}, {Setting: [repetition, 2, draw]} of what hold() gave."""
     require_one(held["runs"])
-    chosen = {(entry["level"], entry["kind"]): Setting.from_json(entry) for entry in held["chosen"]}
-    return chosen, {Setting.from_json(entry): np.array(entry["time_s"]) for entry in held["times"]}
+    chosen = {(entry["level"], entry["kind"]): (Setting.from_json(entry), entry["tuning_s"]) for entry in held["chosen"]}
+    return chosen, {Setting.from_json(entry): np.array([entry["time_s"], entry["products"]], dtype=float).swapaxes(0, 1)
+                    for entry in held["times"]}
