@@ -285,9 +285,11 @@ def _cells(line):
 
 
 def _first(lines, start, words, what):
+    """The first line that begins with `words`; if it is in a table that has a row of exactly this name, that row."""
     for k in range(start, len(lines)):
         if lines[k].lstrip().startswith(words):
-            return k
+            table = itertools.takewhile(lambda row: lines[row].strip(), range(k, len(lines)))
+            return next((row for row in table if _cells(lines[row])[0].group() == words), k)
     raise NotFound(what)
 
 

@@ -80,6 +80,13 @@ class Pages(unittest.TestCase):
         self.assertEqual(table[2:], ["| net | 10 % | **2.5** | **10** | (1.25) | (4) | – | 2000 | – |",
                                      "| helix | 10 % | **2.5** | 10 | (1.25) | (4) | – | 2000 | – |"])
 
+    def test_a_block_is_that_of_its_name_before_one_that_begins_with_it(self):
+        self.write("rods.txt", "a table\n" + "\n".join(f"{name:<20}{step:>20}{number:>10}" for name, step, number in (
+            ("", "", "error"), ("curves that move", "other", "0.01"), ("", "default", "0.02"), ("curves", "other", "0.03"),
+            ("", "default", "0.04"))))
+        for block, error in (("curves", ".04"), ("curves that", ".02")):
+            self.assertEqual(self.page('{{ cell("rods; *; ' + block + '; default; error", ".00") }}').strip(), error)
+
     def test_sentences_name_the_fastest_kinds_of_the_score(self):
         self.write_score()
         for asked, found in (("fastest('direct solve')", "helices at 10 %"), ("among('direct solve')", "nets at 10 %"),
