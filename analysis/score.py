@@ -32,7 +32,7 @@ EXAMPLES = """examples:
   analysis/score.py net                 # the table of nets
   analysis/score.py --errors net        # hours, then
   analysis/score.py --times net         # writes analysis/results/score/net.json
-  analysis/score.py my_guess.py net     # a guess of yours, on nets (docs/own-guess.md)"""
+  analysis/score.py my_guess.py bending_rod     # a guess of yours (docs/own-guess.md)"""
 WORK = os.path.join("results", "score")
 
 

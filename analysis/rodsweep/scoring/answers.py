@@ -18,7 +18,7 @@ from rodsweep.scoring.scenes import TEST
 from rodsweep.scoring.settings import KINDS, OWN, Setting
 from rodsweep.writing import outputs
 
-PROTOCOL = 2
+PROTOCOL = 3
 BASE, EQUAL, SLOWER, FASTER, UNDECIDED = "the base", "equal", "slower", "faster", "not told apart"
 PRODUCTS_TO = 1e-3      # relative: those of timed simulations are those of the ones with errors
 

@@ -1,8 +1,8 @@
 """Looks for the cheapest setting of each kind at each error, on the tuning draws.
 
 First all steps of the grid with the direct solve, and all of Gauss-Seidel, on a few draws. Then CG: a search for every kind
-and error goes along the axes: those of settings.Axes, and the fields of a step, among the steps whose direct solve may
-keep to the error. It tries every value of every axis, moves to the cheapest that may keep to the error, and ends where
+and error goes along the axes: those of settings.Axes, and the fields of a step, among the steps whose direct solve is
+admitted. It tries every value of every axis, moves to the cheapest that may keep to the error, and ends where
 no axis has a cheaper one, or after MOST_ROUNDS. Of all that was tried, the CHEAPEST that may keep to the error run on all
 draws; if none of them is admitted there, the next ones. Those that are admitted, and take at most NEAR times as long as
 the cheapest of them, are candidates for a sitting.
@@ -46,7 +46,7 @@ class Search:
         few = self.scene.few
         every, of_gauss_seidel = self.scene.steps()
         self.runs.measure([settings.direct(step) for step in every], samples=few)
-        useful = {level: [step for step in every if self.may_keep(settings.direct(step), level)] for level in self.levels}
+        useful = self._useful(every)
         slowest = max((self.time(settings.direct(step)) for steps in useful.values() for step in steps), default=0)
         limit_s = max(SHORTEST_S, SLOW * slowest * self.scene.job["time"]["duration_s"])
         self.runs.measure([settings.gauss_seidel(step, sweeps) for step in of_gauss_seidel for sweeps in settings.SWEEPS],
@@ -59,6 +59,13 @@ class Search:
             self.runs.measure([training for some in batch.values() for setting in some for training in setting.trainings()])
             found |= {(level, kind): self.finalists(level, some) for (level, kind), some in batch.items()}
         return found
+
+    def _useful(self, steps):
+        """{level: steps whose direct solve is admitted}"""
+        may = {level: [step for step in steps if self.may_keep(settings.direct(step), level)] for level in self.levels}
+        self.runs.measure([settings.direct(step) for some in may.values() for step in some])
+        return {level: [step for step in some if verdicts.admitted(self.errors(settings.direct(step)), level)]
+                for level, some in may.items()}
 
     def promising(self, level, kind):
         """The settings of a kind that may keep to a level, cheapest first."""
