@@ -52,7 +52,8 @@ class Search:
         self.runs.measure([settings.gauss_seidel(step, sweeps) for step in of_gauss_seidel for sweeps in settings.SWEEPS],
                           samples=few, limit_s=limit_s)
         self._search_ways({level: steps for level, steps in useful.items() if steps}, limit_s)
-        left = {(level, kind): self.promising(level, kind) for level in self.levels for kind in KINDS if kind != OWN}
+        left = {(level, kind): self.promising(level, kind, useful[level]) for level in self.levels for kind in KINDS
+                if kind != OWN}
         found = {place: [] for place in left}
         for begin in range(0, MOST_TRIES * CHEAPEST, CHEAPEST):
             batch = {place: some[begin:begin + CHEAPEST] for place, some in left.items() if not found[place]}
@@ -67,9 +68,10 @@ class Search:
         return {level: [step for step in some if verdicts.admitted(self.errors(settings.direct(step)), level)]
                 for level, some in may.items()}
 
-    def promising(self, level, kind):
-        """The settings of a kind that may keep to a level, cheapest first."""
-        return sorted((s for s in self.tried_settings() if kind in s.kinds() and self.may_keep(s, level)), key=self.time)
+    def promising(self, level, kind, useful):
+        """The settings of a kind that may keep to a level, cheapest first; of CG those with useful steps."""
+        return sorted((s for s in self.tried_settings() if kind in s.kinds() and self.may_keep(s, level)
+                       and (kind not in OF_CG or s.step in useful)), key=self.time)
 
     def finalists(self, level, some):
         kept = sorted((s for s in some if verdicts.admitted(self.errors(s), level)), key=self.time_on_all)
