@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rodsweep.reading import job_paths, modelfile, texts
+from rodsweep.reading import modelfile, texts
 from rodsweep.reading.errors import SweepFileError
 from rodsweep.scoring import verdicts
 from rodsweep.scoring.scenes import TEST
-from rodsweep.scoring.settings import KINDS, OWN, Setting
+from rodsweep.scoring.settings import KINDS, OWN, TRAININGS, Setting, model_of
 from rodsweep.writing import outputs
 
 PROTOCOL = 3
@@ -139,14 +139,11 @@ def judged(answers):
 def training_minutes(root, settings):
     """{model: minutes of processor time [training]} of the models of settings; NaN where it was not measured."""
     found = {}
-    for setting in settings:
-        for training in setting.trainings():
-            for path in job_paths.given([json.loads(training.solve), json.loads(training.guess)], ("model",)):
-                of = modelfile.read(os.path.join(root, path))
-                first = Setting(training.step, "{}", json.dumps({"model": path})).of_training(1)
-                name = os.path.basename(json.loads(first.guess)["model"]).removesuffix(".h5")
-                found.setdefault(name, {})[path] = _short(of.processor_seconds / 60, 3)
-    return {name: [of[path] for path in sorted(of, key=lambda path: (len(path), path))] for name, of in sorted(found.items())}
+    for path in sorted({path for setting in settings for path in setting.models()}):
+        trainings = dict.fromkeys(model_of(path, number) for number in TRAININGS)
+        found[os.path.splitext(os.path.basename(path))[0]] = [
+            _short(modelfile.read(os.path.join(root, training)).processor_seconds / 60, 3) for training in trainings]
+    return found
 
 
 def table(scored):

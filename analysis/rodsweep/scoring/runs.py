@@ -18,11 +18,12 @@ import os
 import tempfile
 import warnings
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from rodsweep.program import JobWarning, call
-from rodsweep.reading import accuracy, job_paths, measures
+from rodsweep.reading import accuracy, measures
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.scoring.scenes import TUNING
@@ -93,7 +94,7 @@ class Runs:
         """The checksum of a model, "" if it does not exist."""
         if path not in self._sums:
             full = os.path.join(self.scene.root, path)
-            self._sums[path] = hashlib.sha256(open(full, "rb").read()).hexdigest()[:12] if os.path.exists(full) else ""
+            self._sums[path] = hashlib.sha256(Path(full).read_bytes()).hexdigest()[:12] if os.path.exists(full) else ""
         return self._sums[path]
 
     def results(self, setting, draws=TUNING, samples=None):
@@ -162,8 +163,8 @@ class Runs:
     def _store(self, setting, draws, of, store):
         numbers = {name: [float(f"{value:.4g}") if np.isfinite(value) else None for value in getattr(of, name)]
                    for name in ("error", "time_s", "products", "network")}
-        models = job_paths.given([json.loads(setting.solve), json.loads(setting.guess)], ("model",))
-        entry = {**setting.as_json(), "draws": draws, "models": {path: self._model(path) for path in models}, **numbers}
+        models = {path: self._model(path) for path in setting.models()}
+        entry = {**setting.as_json(), "draws": draws, "models": models, **numbers}
         if store and OWN not in setting.kinds():    # a guess of the user's may change
             self._write(entry)
         self._remember(entry)
@@ -173,13 +174,8 @@ class Runs:
             file.write(json.dumps(entry) + "\n")
 
     def _run(self, job, path, limit_s=0, resume=False):
-        given = os.path.splitext(path)[0] + ".json"
-        with open(given, "w", encoding="utf-8") as file:
-            json.dump(job, file)
-        words = ["run", given, "-o", path, "-n", str(self.workers)]
-        words += ["--resume"] if resume else []
-        words += ["--task-time-limit", f"{limit_s:g}"] if limit_s else []
-        run_quietly(*words, renamed={given: job["name"]})
+        run_job(job, path, "-n", str(self.workers), *(["--resume"] if resume else []),
+                *(["--task-time-limit", f"{limit_s:g}"] if limit_s else []))
 
 
 def checksum(job):
@@ -193,11 +189,14 @@ def made_by():
     return " ".join(call("--version", renamed={})[1].split())
 
 
-def run_quietly(*words, renamed):
-    """Simulations that failed, and steps that are too large, are results here."""
+def run_job(job, path, *words):
+    """Runs a job into a file. Simulations that failed, and steps that are too large, are results here."""
+    given = os.path.splitext(path)[0] + ".json"
+    with open(given, "w", encoding="utf-8") as file:
+        json.dump(job, file)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", JobWarning)
-        call(*words, renamed=renamed, accepted=(0, SOME_FAILED))
+        call("run", given, "-o", path, *words, renamed={given: job["name"]}, accepted=(0, SOME_FAILED))
 
 
 def _reference(path):

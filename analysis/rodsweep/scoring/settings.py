@@ -65,10 +65,13 @@ class Setting:
 
     def of_training(self, number):
         """With our models of another training, which have -2 or -3 in their names."""
-        def other(path):
-            return re.sub(rf"((?:^|/){OURS}/[\w-]+?)(-\d)?\.h5$", rf"\1{f'-{number}' if number > 1 else ''}.h5", path)
-        solve, guess = (canonical(job_paths.placed(json.loads(part), other, ("model",))) for part in (self.solve, self.guess))
+        solve, guess = (canonical(job_paths.placed(json.loads(part), lambda path: model_of(path, number), ("model",)))
+                        for part in (self.solve, self.guess))
         return replace(self, solve=solve, guess=guess)
+
+    def models(self):
+        """Their paths."""
+        return job_paths.given([json.loads(self.solve), json.loads(self.guess)], ("model",))
 
     def text(self):
         solve = json.loads(self.solve)
@@ -89,6 +92,11 @@ class Setting:
     @classmethod
     def from_json(cls, found):
         return cls(Step(**found["step"]), canonical(found["solve"]), canonical(found["guess"]))
+
+
+def model_of(path, number):
+    """The path of another training of a model; its own if there is only one."""
+    return re.sub(rf"((?:^|/){OURS}/[\w-]+?)(-\d)?\.h5$", rf"\1{f'-{number}' if number > 1 else ''}.h5", path)
 
 
 def canonical(value):

@@ -17,7 +17,7 @@ import numpy as np
 
 from rodsweep.reading.errors import SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
-from rodsweep.scoring.runs import effort, run_quietly
+from rodsweep.scoring.runs import effort, run_job
 from rodsweep.scoring.scenes import TEST, TUNING
 from rodsweep.scoring.settings import Setting
 from rodsweep.writing import outputs
@@ -45,11 +45,8 @@ class Sitting:
         for part in range(1, PARTS + 1):
             self.show(f"{self.scene.name}: {len(some)} settings on {samples} draws for {draws}, timed, part {part} of {PARTS}")
             with tempfile.TemporaryDirectory(dir=self.work) as folder:
-                path, given = (os.path.join(folder, f"times.{kind}") for kind in ("h5", "json"))
-                job = self.scene.job_of(some, draws, samples, frames=False)
-                with open(given, "w", encoding="utf-8") as file:
-                    json.dump(job, file)
-                run_quietly("run", given, "-o", path, "--shard", f"{part}/{PARTS}", renamed={given: job["name"]})
+                path = os.path.join(folder, "times.h5")
+                run_job(self.scene.job_of(some, draws, samples, frames=False), path, "--shard", f"{part}/{PARTS}")
                 with SweepFile(path) as file:
                     self.runs += file.runs()
                     require_one(self.runs)
