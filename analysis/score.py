@@ -21,10 +21,9 @@ from dataclasses import replace
 
 from rodsweep.drawing import layout, study, style
 from rodsweep.reading import commandline
-from rodsweep.reading.errors import KeyNotFound
 from rodsweep.scoring import answers, own_guess, scenes, sitting
 from rodsweep.scoring.answers import Scored
-from rodsweep.scoring.runs import Runs
+from rodsweep.scoring.runs import Runs, checksum
 from rodsweep.scoring.search import Search
 from rodsweep.scoring.settings import KINDS, OWN
 
@@ -70,11 +69,11 @@ def main():
         os.makedirs(os.path.dirname(chosen[0].measured("")), exist_ok=True)    # fails now rather than after hours
     if guess:
         for scene in chosen:
-            scored = own_guess.scored(scene, measured(scene), guess, options.inputs, options.samples, options.work, say)
+            scored = own_guess.scored(scene, Scored.of(scene), guess, options.inputs, options.samples, options.work, say)
             print("\n".join(answers.table(scored)), flush=True)
     elif options.errors:
         for scene in chosen:
-            search = Search(Runs(scene, options.work, options.workers, say))
+            search = search_of(scene, options.work, options.workers)
             report(search.run())
             search.runs.publish()
     elif options.times:
@@ -82,15 +81,17 @@ def main():
             time_all(scene, options.work, options.workers)
     elif options.again:
         for scene in chosen:
-            time_again(scene, measured(scene), options.work, options.workers)
+            time_again(scene, Scored.of(scene), options.work, options.workers)
     else:
-        show([measured(scene) for scene in chosen if os.path.exists(scene.measured(".json")) or options.scenes], options)
+        show([Scored.of(scene) for scene in chosen if os.path.exists(scene.measured(".json")) or options.scenes], options)
 
 
-def measured(scene):
-    if not os.path.exists(scene.measured(".json")):
-        raise KeyNotFound(f"{scene.name} was not measured: run score.py --errors {scene.name}, then --times {scene.name}")
-    return Scored.read(scene.measured(".json"))
+def search_of(scene, work, workers, complete=False):
+    smaller = scenes.SMALLER.get(scene.name)
+    if smaller:
+        smaller = Runs(scenes.Scene(smaller, scene.root), work, workers, say)
+        smaller.require_published()
+    return Search(Runs(scene, work, workers, say, complete), smaller)
 
 
 def report(candidates):
@@ -100,19 +101,18 @@ def report(candidates):
 
 def time_all(scene, work, workers):
     """A sitting that was held for these candidates is not repeated: then errors are computed, which may take long."""
-    runs = Runs(scene, work, workers, say, complete=True)
-    search = Search(runs)
+    search = search_of(scene, work, workers, complete=True)
     candidates, path = search.run(), os.path.join(work, f"{scene.name}_times.json")
     held = sitting.read(path)
     if held.get("candidates") != sitting.listed(candidates):
         held = sitting.Sitting(scene, work, say).hold(candidates)
         sitting.write(path, held)
     chosen, times = sitting.chosen_and_times(held)
-    runs.measure(times, scenes.TEST)
-    scored = Scored(scene.name, scene.title, held["runs"][0]["revision"], held["runs"][-1]["end"][:10], search.reference,
-                    search.tried(), search.levels,
+    search.runs.measure(times, scenes.TEST)
+    scored = Scored(scene.name, scene.title, checksum(scene.job), held["runs"][0]["revision"], held["runs"][-1]["end"][:10],
+                    search.reference, search.tried(), search.levels,
                     answers.training_minutes(scene.root, [setting for setting, _ in chosen.values()]),
-                    answers.answers_of(chosen, times, runs))
+                    answers.answers_of(chosen, times, search.runs))
     scored.write(scene.measured(".json"))
     print("\n".join(answers.table(scored)), flush=True)
 

@@ -18,7 +18,7 @@ from rodsweep.reading import accuracy
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.scoring import answers, scenes, search, settings, sitting, verdicts
-from rodsweep.scoring.runs import Measured, Runs
+from rodsweep.scoring.runs import Measured, Runs, checksum
 from rodsweep.scoring.settings import KINDS, OF_CG, OWN, Setting, Step
 
 PRETRAINED = os.path.join(os.environ["SOURCE_DIR"], "network", "pretrained")
@@ -199,8 +199,9 @@ class Small(unittest.TestCase):
         chosen, times = sitting.chosen_and_times(json.loads(json.dumps(cls.held)))
         cls.search.runs.measure(times, scenes.TEST)
         minutes = answers.training_minutes(cls.folder.name, [setting for setting, _ in chosen.values()])
-        cls.scored = answers.Scored("rod", "rod", "r", "2026-11-28", cls.search.reference, cls.search.tried(),
-                                    cls.search.levels, minutes, answers.answers_of(chosen, times, cls.search.runs))
+        cls.scored = answers.Scored("rod", "rod", checksum(cls.scene.job), "r", "2026-11-28", cls.search.reference,
+                                    cls.search.tried(), cls.search.levels, minutes,
+                                    answers.answers_of(chosen, times, cls.search.runs))
 
     def test_errors_are_distances_from_the_finer_reference_at_fixed_instants(self):
         some = [settings.direct(Step(step, "bdf2")) for step in (0.02, 0.01)]
@@ -302,12 +303,32 @@ class Small(unittest.TestCase):
         with self.assertRaisesRegex(KeyNotFound, "the search of rod is not complete: run score.py --errors rod"):
             search.Search(runs).run()
 
-    def test_candidates_are_near_the_cheapest_that_is_admitted(self):
-        some = {settings.direct(Step(step, "bdf2")): Measured(np.full(5, error), np.full(5, time), np.zeros(5), np.zeros(5))
-                for step, error, time in ((1, 0.02, 1), (2, 0.001, 2.1), (3, 0.001, 4), (4, 0.001, 4.3))}
+    def test_candidates_are_near_the_cheapest(self):
+        some = {settings.direct(Step(step, "bdf2")): Measured(np.full(5, 0.001), np.full(5, time), np.zeros(5), np.zeros(5))
+                for step, time in ((2, 2.1), (3, 4), (4, 4.3))}
         found = search.Search.__new__(search.Search)
         found.runs = mock.Mock(results=lambda setting: some[setting])
-        self.assertEqual([setting.step.step_s for setting in found.finalists(0.01, list(some))], [2, 3])
+        self.assertEqual([setting.step.step_s for setting in found.near(list(some))], [2, 3])
+
+    def test_a_large_scene_tries_what_was_the_cheapest_on_a_smaller_one(self):
+        best = {kind: search.best(self.search.runs, 1e-2, kind) for kind in CG}
+        for kind, some in best.items():
+            self.assertTrue(some)
+            self.assertEqual(some[0], search.promising(self.search.runs, 1e-2, kind)[0])
+            for part in (Setting.preconditioner, lambda setting: setting.guess):
+                self.assertGreaterEqual(len({part(setting) for setting in some}), 1 if kind == settings.ZERO else 2)
+        with mock.patch.multiple(search, BEST=2, LEVELS=(1e-2,)):
+            large = search.Search(Runs(self.scene, os.path.join(self.folder.name, "large"), 1), self.search.runs)
+            found = large.run()
+        ways = {(setting.solve, setting.guess) for kind in CG for setting in best[kind]}
+        tried = {(s.solve, s.guess) for s in search.tried(large.runs) if s.kinds() & set(CG)}
+        self.assertTrue(tried)
+        self.assertLessEqual(tried, ways)
+        self.assertTrue(found[1e-2, settings.ZERO])
+
+    def test_a_smaller_scene_has_the_same_networks(self):
+        for large, small in scenes.SMALLER.items():
+            self.assertEqual(scenes.Scene(large).axes(settings.CALL).guesses, scenes.Scene(small).axes(settings.CALL).guesses)
 
     def test_the_table_comes_back_from_its_file_and_has_every_kind(self):
         path = os.path.join(self.folder.name, "analysis/results/score/rod.json")

@@ -12,13 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rodsweep.reading import modelfile, texts
-from rodsweep.reading.errors import SweepFileError
+from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.scoring import verdicts
+from rodsweep.scoring.runs import checksum
 from rodsweep.scoring.scenes import TEST
 from rodsweep.scoring.settings import KINDS, OWN, TRAININGS, Setting, model_of
 from rodsweep.writing import outputs
 
-PROTOCOL = 3
+PROTOCOL = 4
 BASE, EQUAL, SLOWER, FASTER, UNDECIDED = "the base", "equal", "slower", "faster", "not told apart"
 PRODUCTS_TO = 1e-3      # relative: those of timed simulations are those of the ones with errors
 
@@ -70,6 +71,7 @@ class Scored:
     """Of a scene. `reference`: bounds of the medians of its own error, by draws; `tried`: number of settings by kind."""
     name: str
     title: str
+    job: str        # checksum of the scene's
     revision: str
     date: str
     reference: dict
@@ -87,6 +89,17 @@ class Scored:
         lines = [f" {json.dumps(name)}: {json.dumps(value)}" for name, value in made.items()]
         rows = ",\n".join(f"  {json.dumps(answer.as_json())}" for answer in self.answers)
         outputs.write(path, "{\n" + ",\n".join([*lines, f' "answers": [\n{rows}\n ]']) + "\n}\n")
+
+    @classmethod
+    def of(cls, scene):
+        """Raises an error if the scene was not measured, or has changed since."""
+        path = scene.measured(".json")
+        if not os.path.exists(path):
+            raise KeyNotFound(f"{scene.name} was not measured: run score.py --errors {scene.name}, then --times {scene.name}")
+        read = cls.read(path)
+        if read.job != checksum(scene.job):
+            raise SweepFileError(f"{path} is of another jobs/score/{scene.name}_draws.json: measure it again")
+        return read
 
     @classmethod
     def read(cls, path):

@@ -78,6 +78,10 @@ class Runs:
             self.known = {key: replace(of, time_s=of.time_s * entry["scale"]) for key, of in self.known.items()}
             self._last = entry["made"]
 
+    def require_published(self):
+        if not os.path.exists(self.scene.measured(".jsonl.xz")):
+            raise KeyNotFound(f"the search of {self.scene.name} comes first: run score.py --errors {self.scene.name}")
+
     def publish(self):
         os.makedirs(os.path.dirname(self.scene.measured("")), exist_ok=True)
         with open(self.path, "rb") as file, outputs.whole(self.scene.measured(".jsonl.xz")) as part, open(part, "wb") as out:
@@ -99,7 +103,7 @@ class Runs:
 
     def results(self, setting, draws=TUNING, samples=None):
         """What was measured on the first `samples` draws (default: all); None: nothing was. Few draws are remembered beside
-        all of them, so that a search that goes on takes the same decisions."""
+        all of them: the search decides by them."""
         return self.known.get((setting, draws, samples or self.scene.samples))
 
     def reference(self, draws):

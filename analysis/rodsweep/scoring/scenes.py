@@ -24,6 +24,7 @@ ENDING = "_draws.json"
 SEEDS_APART = 10000
 CHAINS = {"rods": (5, 30), "rods-large": (3,)}
 LATTICES = {"lattices": (5, 20)}
+SMALLER = {"large_forest": "forest", "large_lattice": "lattice", "large_net": "net"}
 PAPER = {"bending_rod": "bending-paper-best", "helix": "helix-paper-best", "tree": "tree-paper-best",
          "falling_rods": "falling-paper-best", "knot": "knot-paper-best"}
 
@@ -43,7 +44,7 @@ class Scene:
         with open(path, encoding="utf-8") as file:
             self.job = json.load(file)
         self.samples = self.job["samples"]
-        self.few = max(2, self.samples // 5)
+        self.few, self.fewest = max(2, self.samples // 5), min(2, self.samples // 4)
         scene = self.job["scene"]
         self.title = name.replace("_", " ")
         self.has_contact = isinstance(scene.get("contact"), dict)

@@ -1,27 +1,36 @@
-"""Looks for the cheapest setting of each kind at each error, on the tuning draws.
+"""Looks for the cheapest setting of each kind at each error, on the tuning draws, by successive halving.
 
-First all steps of the grid with the direct solve, and all of Gauss-Seidel, on a few draws. Then CG: a search for every kind
-and error goes along the axes: those of settings.Axes, and the fields of a step, among the steps whose direct solve is
-admitted. It tries every value of every axis, moves to the cheapest that may keep to the error, and ends where
-no axis has a cheaper one, or after MOST_ROUNDS. Of all that was tried, the CHEAPEST that may keep to the error run on all
-draws; if none of them is admitted there, the next ones. Those that are admitted, and take at most NEAR times as long as
-the cheapest of them, are candidates for a sitting.
+All settings that are tried run on the fewest draws. Of those that may keep to an error there, the BATCH cheapest run on
+a few draws, and the FINAL cheapest of those on all draws, ours with all trainings; if none of them is admitted, the
+next BATCH does. Settings that are admitted, and take at most NEAR times as long as the cheapest of them, are candidates
+for a sitting.
+
+The direct solve with all steps of the grid, and Gauss-Seidel with all of its steps, are tried first. The useful steps
+of an error are the first whose direct solve is admitted. A search for every kind of CG and every error goes along the
+axes: those of settings.Axes, and the fields of a step, among the useful ones. It tries every value of every axis, moves
+to the cheapest that may keep to the error, and ends where no axis has a cheaper one, or after MOST_ROUNDS.
+
+A large scene tries what was the cheapest on a smaller one in place of that search: of each kind at each error, settings
+with BEST different preconditioners and with BEST different guesses, with the cheapest useful step.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rodsweep.scoring import settings, verdicts
 from rodsweep.scoring.scenes import LEVELS, TEST, TUNING
-from rodsweep.scoring.settings import KINDS, OF_CG, OWN, Way
+from rodsweep.scoring.settings import DIRECT, KINDS, OF_CG, OWN, Setting, Way
 
 NEAR = 2
-CHEAPEST = 6
-MOST_TRIES = 10
+BATCH = 12
+FINAL = 4
+LEAST_STEPS = 4
+BEST = 4
+MOST_TRIES = 5
 FINALISTS = 3
 MOST_ROUNDS = 4
-SLOW = 30           # times the slowest direct solve that is of use: what takes longer is stopped
+SLOW = 10           # times the slowest direct solve that is of use: what takes longer is stopped
 SHORTEST_S = 2
 
 
@@ -35,69 +44,75 @@ class Place:
 
 
 class Search:
-    def __init__(self, runs):
-        self.runs, self.scene = runs, runs.scene
+    """`smaller`: the Runs of a smaller scene, whose search is complete."""
+
+    def __init__(self, runs, smaller=None):
+        self.runs, self.scene, self.smaller = runs, runs.scene, smaller
         self.axes = {kind: self.scene.axes(kind) for kind in OF_CG}
         self.reference = {draws: float(f"{verdicts.upper_bound(runs.reference(draws)[1]):.3g}") for draws in (TUNING, TEST)}
         self.levels = [level for level in LEVELS if max(self.reference.values()) <= level / 3]
 
     def run(self):
         """{(level, kind): candidates}, cheapest first."""
-        few = self.scene.few
         every, of_gauss_seidel = self.scene.steps()
-        self.runs.measure([settings.direct(step) for step in every], samples=few)
-        useful = self._useful(every)
+        self._try([settings.direct(step) for step in every])
+        useful = {level: [setting.step for setting in some] for (level, _), some in self._admitted(
+            {(level, DIRECT): promising(self.runs, level, DIRECT) for level in self.levels}, LEAST_STEPS, BATCH).items()}
         slowest = max((self.time(settings.direct(step)) for steps in useful.values() for step in steps), default=0)
         limit_s = max(SHORTEST_S, SLOW * slowest * self.scene.job["time"]["duration_s"])
-        self.runs.measure([settings.gauss_seidel(step, sweeps) for step in of_gauss_seidel for sweeps in settings.SWEEPS],
-                          samples=few, limit_s=limit_s)
-        self._search_ways({level: steps for level, steps in useful.items() if steps}, limit_s)
-        left = {(level, kind): self.promising(level, kind, useful[level]) for level in self.levels for kind in KINDS
-                if kind != OWN}
-        found = {place: [] for place in left}
-        for begin in range(0, MOST_TRIES * CHEAPEST, CHEAPEST):
-            batch = {place: some[begin:begin + CHEAPEST] for place, some in left.items() if not found[place]}
+        self._try([settings.gauss_seidel(step, sweeps) for step in of_gauss_seidel for sweeps in settings.SWEEPS], limit_s)
+        with_steps = {level: steps for level, steps in useful.items() if steps}
+        if self.smaller:
+            self._try([replace(setting, step=self._cheapest_step(steps)) for level, steps in with_steps.items()
+                       for kind in OF_CG for setting in best(self.smaller, level, kind)], limit_s)
+        else:
+            self._search_ways(with_steps, limit_s)
+        left = {(level, kind): [s for s in promising(self.runs, level, kind) if kind not in OF_CG or s.step in useful[level]]
+                for level in self.levels for kind in KINDS if kind != OWN}
+        return {place: self.near(some) for place, some in self._admitted(left).items()}
+
+    def near(self, some):
+        """The first ones that take at most NEAR times as long as the first."""
+        return [setting for setting in some if self.time_on_all(setting) <= NEAR * self.time_on_all(some[0])][:FINALISTS]
+
+    def _admitted(self, left, least=1, final=FINAL):
+        """{(level, kind): those of `left` that are admitted, cheapest first}, at least so many if there are; `left` has
+        settings, cheapest first."""
+        found, few = {place: [] for place in left}, self.scene.few
+        for begin in range(0, MOST_TRIES * BATCH, BATCH):
+            batch = {place: some[begin:begin + BATCH] for place, some in left.items() if len(found[place]) < least}
+            self.runs.measure([setting for some in batch.values() for setting in some], samples=few)
+            batch = {(level, kind): [s for s in sorted(some, key=lambda s: _time(self.runs, s, few))
+                                     if _may_keep(self.runs, s, level, few)][:final] for (level, kind), some in batch.items()}
             self.runs.measure([training for some in batch.values() for setting in some for training in setting.trainings()])
-            found |= {(level, kind): self.finalists(level, some) for (level, kind), some in batch.items()}
-        return found
+            for (level, kind), some in batch.items():
+                found[level, kind] += [setting for setting in some if verdicts.admitted(self.errors(setting), level)]
+        return {place: sorted(some, key=self.time_on_all) for place, some in found.items()}
 
-    def _useful(self, steps):
-        """{level: steps whose direct solve is admitted}"""
-        may = {level: [step for step in steps if self.may_keep(settings.direct(step), level)] for level in self.levels}
-        self.runs.measure([settings.direct(step) for some in may.values() for step in some])
-        return {level: [step for step in some if verdicts.admitted(self.errors(settings.direct(step)), level)]
-                for level, some in may.items()}
-
-    def promising(self, level, kind, useful):
-        """The settings of a kind that may keep to a level, cheapest first; of CG those with useful steps."""
-        return sorted((s for s in self.tried_settings() if kind in s.kinds() and self.may_keep(s, level)
-                       and (kind not in OF_CG or s.step in useful)), key=self.time)
-
-    def finalists(self, level, some):
-        kept = sorted((s for s in some if verdicts.admitted(self.errors(s), level)), key=self.time_on_all)
-        return [s for s in kept if self.time_on_all(s) <= NEAR * self.time_on_all(kept[0])][:FINALISTS]
+    def _try(self, some, limit_s=0):
+        self.runs.measure(some, samples=self.scene.fewest, limit_s=limit_s)
 
     def time(self, setting):
-        return np.median(self.runs.results(setting, samples=self.scene.few).time_s)
+        return _time(self.runs, setting, self.scene.fewest)
 
     def time_on_all(self, setting):
         return np.median(np.mean([self.runs.results(training).time_s for training in setting.trainings()], axis=0))
-
-    def may_keep(self, setting, level):
-        return verdicts.may_keep(self.runs.results(setting, samples=self.scene.few).error, level)
 
     def errors(self, setting):
         """[training, draw]"""
         return np.array([self.runs.results(training).error for training in setting.trainings()])
 
+    def _cheapest_step(self, steps):
+        return min(steps, key=lambda step: self.time(settings.direct(step)))
+
     def _search_ways(self, useful, limit_s):
-        now = {(level, kind): Place(min(steps, key=lambda step: self.time(settings.direct(step))), self.axes[kind].first())
+        now = {(level, kind): Place(self._cheapest_step(steps), self.axes[kind].first())
                for level, steps in useful.items() for kind in OF_CG}
-        tried = [Place(place.step, way) for (_, kind), place in now.items() for way in self.axes[kind].screened()]
+        places = [Place(place.step, way) for (_, kind), place in now.items() for way in self.axes[kind].screened()]
         for _ in range(MOST_ROUNDS):
-            tried += [other for (level, kind), place in now.items() for other in self._beside(place, kind, useful[level])]
-            self.runs.measure([place.setting() for place in tried], samples=self.scene.few, limit_s=limit_s)
-            moved = {(level, kind): self._cheapest(tried, level, kind) or place for (level, kind), place in now.items()}
+            places += [other for (level, kind), place in now.items() for other in self._beside(place, kind, useful[level])]
+            self._try([place.setting() for place in places], limit_s)
+            moved = {(level, kind): self._cheapest(places, level, kind) or place for (level, kind), place in now.items()}
             if moved == now:
                 break
             now = moved
@@ -107,17 +122,44 @@ class Search:
         return ways + [Place(step, place.way) for step in useful if _fields_apart(step, place.step) <= 1]
 
     def _cheapest(self, places, level, kind):
-        may = [place for place in dict.fromkeys(places)
-               if kind in place.setting().kinds() and self.may_keep(place.setting(), level)]
+        may = [place for place in dict.fromkeys(places) if kind in place.setting().kinds()
+               and _may_keep(self.runs, place.setting(), level, self.scene.fewest)]
         return min(may, key=lambda place: self.time(place.setting()), default=None)
 
     def tried(self):
         """{kind: number of settings}"""
-        return {kind: sum(kind in setting.kinds() for setting in self.tried_settings()) for kind in KINDS if kind != OWN}
+        return {kind: sum(kind in setting.kinds() for setting in tried(self.runs)) for kind in KINDS if kind != OWN}
 
-    def tried_settings(self):
-        """All settings that ran on a few draws."""
-        return [setting for setting, draws, samples in self.runs.known if draws == TUNING and samples == self.scene.few]
+
+def tried(runs):
+    """All settings that ran on the fewest draws."""
+    return [setting for setting, draws, samples in runs.known if draws == TUNING and samples == runs.scene.fewest]
+
+
+def promising(runs, level, kind):
+    """The settings of a kind that may keep to a level on the fewest draws, cheapest first."""
+    fewest = runs.scene.fewest
+    return sorted((setting for setting in tried(runs) if kind in setting.kinds() and _may_keep(runs, setting, level, fewest)),
+                  key=lambda setting: _time(runs, setting, fewest))
+
+
+def best(runs, level, kind):
+    """Of the promising settings the cheapest with BEST different preconditioners, and with BEST different guesses."""
+    made = []
+    for part in (Setting.preconditioner, lambda setting: setting.guess):
+        first = {}
+        for setting in promising(runs, level, kind):
+            first.setdefault(part(setting), setting)
+        made += list(first.values())[:BEST]
+    return list(dict.fromkeys(made))
+
+
+def _time(runs, setting, samples):
+    return np.median(runs.results(setting, samples=samples).time_s)
+
+
+def _may_keep(runs, setting, level, samples):
+    return verdicts.may_keep(runs.results(setting, samples=samples).error, level)
 
 
 def _fields_apart(step, other):

@@ -73,6 +73,11 @@ class Setting:
         """Their paths."""
         return job_paths.given([json.loads(self.solve), json.loads(self.guess)], ("model",))
 
+    def preconditioner(self):
+        """With its lag and model, as JSON."""
+        solve = json.loads(self.solve)
+        return canonical({key: solve[key] for key in ("preconditioner", "lag_steps", "learned_preconditioner") if key in solve})
+
     def text(self):
         solve = json.loads(self.solve)
         if solve["method"] != "cg":
