@@ -21,9 +21,10 @@ from dataclasses import replace
 
 from rodsweep.drawing import layout, study, style
 from rodsweep.reading import commandline
+from rodsweep.reading.job_paths import checksum
 from rodsweep.scoring import answers, own_guess, scenes, sitting
 from rodsweep.scoring.answers import Scored
-from rodsweep.scoring.runs import Runs, checksum
+from rodsweep.scoring.runs import Runs
 from rodsweep.scoring.search import Search
 from rodsweep.scoring.settings import KINDS, OWN
 

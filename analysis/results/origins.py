@@ -21,14 +21,12 @@ from datetime import datetime
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.join(HERE, "..", "..")
+sys.path.insert(0, os.path.join(ROOT, "analysis"))
+from rodsweep.reading import measures, remarks, timings  # noqa: E402
+from rodsweep.reading.job_paths import checksum  # noqa: E402
+from rodsweep.reading.sweepfile import SweepFile  # noqa: E402
 ORIGINS = os.path.join(HERE, "origins.txt")
 COLUMNS = ("study", "revision", "day", "minutes", "processor", "tasks", "failed", "disturbed", "job", "models")
-
-
-def job_checksum(job):
-    """Of a parsed job."""
-    meant = {key: value for key, value in job.items() if key not in ("$schema", "name", "description")}
-    return hashlib.sha256(json.dumps(meant, sort_keys=True).encode()).hexdigest()[:12]
 
 
 def models_checksum(job, folder):
@@ -73,7 +71,7 @@ def older(origins):
         except FileNotFoundError as missing:
             found[name] = f"{where} has a model that does not exist: {missing.filename}"
             continue
-        if job_checksum(job) != row["job"]:
+        if checksum(job) != row["job"]:
             found[name] = f"{where} has changed since"
         elif models != row["models"]:
             found[name] = f"a model of {where} has changed since"
@@ -81,16 +79,13 @@ def older(origins):
 
 
 def row_of(path):
-    sys.path.insert(0, os.path.join(ROOT, "analysis"))
-    from rodsweep.reading import remarks    # not needed to read origins.txt
-    from rodsweep.reading.sweepfile import SweepFile
     with SweepFile(path) as file:
         job, runs = file.job(), file.runs()
         seconds = sum((moment(run["end"] or run["begin"]) - moment(run["begin"])).total_seconds() for run in runs)
         processors = dict.fromkeys(run["versions"].split("; ")[-1] for run in runs)
         made = [job["name"], remarks.revisions(file), runs[0]["begin"][:10],
                 f"{seconds / 60:.1f}", " / ".join(processors), str(file.task_count),
-                str(int((file.complete & ~file.ok).sum())), disturbed(file), job_checksum(job),
+                str(int((file.complete & ~file.ok).sum())), disturbed(file), checksum(job),
                 models_checksum(job, os.path.dirname(runs[-1]["job"]))]
     return dict(zip(COLUMNS, made))
 
@@ -101,7 +96,6 @@ def moment(text):
 
 def disturbed(file):
     """Share of the time of solves that interruptions took; "-" if no single solve was timed."""
-    from rodsweep.reading import measures, timings
     if not timings.timed(file):
         return "-"
     sims = measures.simulations(file, file.complete)

@@ -16,9 +16,10 @@ from running import run
 import rodsweep
 from rodsweep.reading import accuracy
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
+from rodsweep.reading.job_paths import checksum
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.scoring import answers, scenes, search, settings, sitting, verdicts
-from rodsweep.scoring.runs import Measured, Runs, checksum
+from rodsweep.scoring.runs import Measured, Runs
 from rodsweep.scoring.settings import KINDS, OF_CG, OWN, Setting, Step
 
 PRETRAINED = os.path.join(os.environ["SOURCE_DIR"], "network", "pretrained")

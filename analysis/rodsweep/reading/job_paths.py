@@ -1,4 +1,7 @@
-"""Paths of input files in a parsed job, or in a part of it."""
+"""Paths of input files in a parsed job, or in a part of it; its checksum."""
+
+import hashlib
+import json
 
 from rodsweep.reading.constants import PATHS
 
@@ -23,3 +26,9 @@ def given(value, keys=PATHS):
     found = {}
     placed(value, lambda path: found.setdefault(path, path), keys)
     return list(found)
+
+
+def checksum(job):
+    """Of what a parsed job means."""
+    meant = {key: value for key, value in job.items() if key not in ("$schema", "name", "description")}
+    return hashlib.sha256(json.dumps(meant, sort_keys=True).encode()).hexdigest()[:12]

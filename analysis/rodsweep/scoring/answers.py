@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rodsweep.reading import modelfile, texts
+from rodsweep.reading import job_paths, modelfile, texts
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.scoring import verdicts
-from rodsweep.scoring.runs import checksum
 from rodsweep.scoring.scenes import TEST
 from rodsweep.scoring.settings import KINDS, OWN, TRAININGS, Setting, model_of
 from rodsweep.writing import outputs
@@ -97,7 +96,7 @@ class Scored:
         if not os.path.exists(path):
             raise KeyNotFound(f"{scene.name} was not measured: run score.py --errors {scene.name}, then --times {scene.name}")
         read = cls.read(path)
-        if read.job != checksum(scene.job):
+        if read.job != job_paths.checksum(scene.job):
             raise SweepFileError(f"{path} is of another jobs/score/{scene.name}_draws.json: measure it again")
         return read
 

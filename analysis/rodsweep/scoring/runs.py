@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from rodsweep.program import JobWarning, call
-from rodsweep.reading import accuracy, measures
+from rodsweep.reading import accuracy, job_paths, measures
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.scoring.scenes import TUNING
@@ -57,7 +57,7 @@ class Runs:
             with lzma.open(published, "rt", encoding="utf-8") as file:
                 outputs.write(self.path, file.read())
         self.known, self._frames, self._sums = {}, {}, {}
-        self._header = {"job": checksum(scene.job), "made": made_by()}
+        self._header = {"job": job_paths.checksum(scene.job), "made": made_by()}
         self._last = None
         if os.path.exists(self.path):
             self._read()
@@ -180,12 +180,6 @@ class Runs:
     def _run(self, job, path, limit_s=0, resume=False):
         run_job(job, path, "-n", str(self.workers), *(["--resume"] if resume else []),
                 *(["--task-time-limit", f"{limit_s:g}"] if limit_s else []))
-
-
-def checksum(job):
-    """Of what a job means."""
-    meant = {key: value for key, value in job.items() if key not in ("$schema", "name", "description")}
-    return hashlib.sha256(json.dumps(meant, sort_keys=True).encode()).hexdigest()[:12]
 
 
 def made_by():
