@@ -238,7 +238,12 @@ class Small(unittest.TestCase):
                 self.assertTrue(verdicts.admitted(self.search.errors(setting), level))
                 for training in setting.trainings():
                     self.assertEqual(len(self.search.runs.results(training).error), 5)
+            known = self.search.admitted(level, kind)
+            self.assertEqual(some, known[:len(some)])
+            self.assertLessEqual(len(some), search.FINALISTS)
         self.assertTrue(all(self.candidates[1e-2, kind] for kind in (settings.DIRECT, *CG)))
+        coarse, fine = (self.search.admitted(level, settings.DIRECT) for level in (1e-1, 1e-3))
+        self.assertLessEqual(set(fine), set(coarse))    # what keeps to a small error keeps to a larger one
         self.assertEqual(list(self.search.tried()), [kind for kind in KINDS if kind != OWN])
         self.assertEqual(self.search.tried()[settings.DIRECT], 4)
 

@@ -2,8 +2,8 @@
 
 All settings that are tried run on the fewest draws. Of those that may keep to an error there, the BATCH cheapest run on
 a few draws, and the FINAL cheapest of those on all draws, ours with all trainings; if none of them is admitted, the
-next BATCH does. Settings that are admitted, and take at most NEAR times as long as the cheapest of them, are candidates
-for a sitting.
+next FINAL do, then the next BATCH. Of all settings that are admitted on all draws, the cheapest ones are candidates for a
+sitting, if they take at most NEAR times as long as the first.
 
 The direct solve with all steps of the grid, and Gauss-Seidel with all of its steps, are tried first. The useful steps
 of an error are the first whose direct solve is admitted. A search for every kind of CG and every error goes along the
@@ -56,8 +56,9 @@ class Search:
         """{(level, kind): candidates}, cheapest first."""
         every, of_gauss_seidel = self.scene.steps()
         self._try([settings.direct(step) for step in every])
-        useful = {level: [setting.step for setting in some] for (level, _), some in self._admitted(
-            {(level, DIRECT): promising(self.runs, level, DIRECT) for level in self.levels}, LEAST_STEPS, BATCH).items()}
+        first = self._run_on_all({(level, DIRECT): promising(self.runs, level, DIRECT) for level in self.levels},
+                                 LEAST_STEPS, BATCH)
+        useful = {level: [setting.step for setting in some] for (level, _), some in first.items()}
         slowest = max((self.time(settings.direct(step)) for steps in useful.values() for step in steps), default=0)
         limit_s = max(SHORTEST_S, SLOW * slowest * self.scene.job["time"]["duration_s"])
         self._try([settings.gauss_seidel(step, sweeps) for step in of_gauss_seidel for sweeps in settings.SWEEPS], limit_s)
@@ -69,25 +70,33 @@ class Search:
             self._search_ways(with_steps, limit_s)
         left = {(level, kind): [s for s in promising(self.runs, level, kind) if kind not in OF_CG or s.step in useful[level]]
                 for level in self.levels for kind in KINDS if kind != OWN}
-        return {place: self.near(some) for place, some in self._admitted(left).items()}
+        self._run_on_all(left)
+        return {(level, kind): self.near(self.admitted(level, kind)) for level, kind in left}
 
     def near(self, some):
         """The first ones that take at most NEAR times as long as the first."""
         return [setting for setting in some if self.time_on_all(setting) <= NEAR * self.time_on_all(some[0])][:FINALISTS]
 
-    def _admitted(self, left, least=1, final=FINAL):
-        """{(level, kind): those of `left` that are admitted, cheapest first}, at least so many if there are; `left` has
-        settings, cheapest first."""
+    def admitted(self, level, kind):
+        """Of the settings that ran on all draws, cheapest first."""
+        return sorted((s for s in tried(self.runs) if kind in s.kinds() and all(map(self.runs.results, s.trainings()))
+                       and verdicts.admitted(self.errors(s), level)), key=self.time_on_all)
+
+    def _run_on_all(self, left, least=1, final=FINAL):
+        """Runs settings of {(level, kind): settings, cheapest first} until so many are admitted, which it gives. What is
+        known of other kinds and levels does not count: a search that goes on must not decide otherwise."""
         found, few = {place: [] for place in left}, self.scene.few
         for begin in range(0, MOST_TRIES * BATCH, BATCH):
             batch = {place: some[begin:begin + BATCH] for place, some in left.items() if len(found[place]) < least}
             self.runs.measure([setting for some in batch.values() for setting in some], samples=few)
             batch = {(level, kind): [s for s in sorted(some, key=lambda s: _time(self.runs, s, few))
-                                     if _may_keep(self.runs, s, level, few)][:final] for (level, kind), some in batch.items()}
-            self.runs.measure([training for some in batch.values() for setting in some for training in setting.trainings()])
-            for (level, kind), some in batch.items():
-                found[level, kind] += [setting for setting in some if verdicts.admitted(self.errors(setting), level)]
-        return {place: sorted(some, key=self.time_on_all) for place, some in found.items()}
+                                     if _may_keep(self.runs, s, level, few)] for (level, kind), some in batch.items()}
+            for first in range(0, BATCH, final):
+                part = {place: some[first:first + final] for place, some in batch.items() if len(found[place]) < least}
+                self.runs.measure([training for some in part.values() for setting in some for training in setting.trainings()])
+                for (level, kind), some in part.items():
+                    found[level, kind] += [setting for setting in some if verdicts.admitted(self.errors(setting), level)]
+        return found
 
     def _try(self, some, limit_s=0):
         self.runs.measure(some, samples=self.scene.fewest, limit_s=limit_s)
