@@ -22,25 +22,21 @@ line. A text in @<<...>> replaces the visible text there, and is not shown:
     | bending rods@<<Bending rod>> | .00 **.00** |
     {% endfilter %}
 
-{{ score("10 %", "1 %") }} is the table of score.txt at these errors, {{ answer("1 %") }} a short one of factors.
-{{ fastest("direct solve") }} is where a kind is the fastest there, as "helices at 1 % and trees at 1 and 0.1 %", {{
-among("direct solve") }} where it is one of several whose intervals overlap, and {{ chosen("CG, Jacobi", "copingnet")
-}} where its setting has these words. {{ cheapest("net_gusts", {"8 × 8": "Net, scene.rows = 8:"}) }} is a table of the
-fastest combinations, with a row for each of these blocks.
+{{ score.times("10 %", "1 %") }} and the other functions of `score` are those of scores.py. {{ cheapest("net_gusts",
+{"8 × 8": "Net, scene.rows = 8:"}) }} is a table of the fastest combinations, with a row for each of these blocks.
 
 The numbers in the cells are styles. A cell has one number per column in its address, each with or without its
 interval, [.00, .00]. Text in `backticks` and columns called `-` do not change. In tables, a | in an address is \\|.
 """
 
-import functools
 import itertools
 import os
 import re
 import sys
 from decimal import ROUND_HALF_UP, Decimal
-from typing import NamedTuple
 
 import jinja2
+import scores
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 TABLES = os.path.join(ROOT, "analysis", "results")
@@ -53,27 +49,12 @@ DISTRUSTED = "not to be trusted"    # in a line below times of which too many we
 WITH_INTERVAL = re.compile(rf"({NUMBER.pattern})[*_]*(?:\s*\[({NUMBER.pattern}), ({NUMBER.pattern})\])?")
 
 
-class Answer(NamedTuple):
-    """A row of score.txt: ms of a simulated second, whether its error is at most that of the block, the interval of its
-    time over that of the cheapest setting, and its setting."""
-    time: Decimal
-    kept: bool
-    low: Decimal
-    high: Decimal
-    setting: str
-
-
 class NotFound(Exception):
     """The message names the table and what it lacks."""
 
 
 class Tables:
     """The tables of a folder, each read once. Those that are older than their job or models are not quoted."""
-
-    KINDS = {"direct solve": "direct solve", "CG from zero": "CG from zero", "CG, classical guess": "classical guess",
-             "CG, learned guess": "learned guess", "CG, learned preconditioner": "learned preconditioner",
-             "CG, Jacobi": "Jacobi, any guess", "Gauss-Seidel": "Gauss–Seidel"}
-    ANY = "CG, Jacobi"    # its settings are among those of the others
 
     def __init__(self, folder):
         self.folder, self.lines = folder, {}
@@ -98,65 +79,11 @@ class Tables:
             if not os.path.exists(path):
                 raise NotFound(f"there is no table {path}")
             for study, why in self.older.items():
-                if study == name or (name == "score" and study.endswith("_tuning")):
+                if study == name:
                     raise NotFound(f"{name}.txt is not quoted: {why}; run the study and draw it again")
             with open(path, encoding="utf-8") as file:
                 self.lines[name] = file.read().splitlines()
         return self.lines[name]
-
-    def score(self, *levels):
-        """A Markdown table of the times in score.txt at these errors, such as "1 %". Bold: the fastest kinds. In
-        parentheses: the setting's error is above its level on the test draws. An error that no setting reaches has no row."""
-        rows = [["scene", "error", *self.KINDS.values()]]
-        for (scene, level), answers in self._scores.items():
-            if level in levels and answers:
-                best = _fastest(answers)
-                rows.append([scene, level, *(_time_text(answers.get(kind), kind in best) for kind in self.KINDS)])
-        return _markdown(rows)
-
-    SHORT = {"direct solve": ("direct solve",), "CG, no learning": ("CG from zero", "CG, classical guess"),
-             "CG, learned guess": ("CG, learned guess",), "Gauss–Seidel": ("Gauss-Seidel",)}
-
-    def answer(self, level):
-        """A Markdown table: the time of the cheapest setting of a few kinds at an error, over the fastest's. Bold: the
-        fastest kinds. A scene has a row if a setting keeps to the error on the test draws."""
-        rows = [["", *self.SHORT]]
-        for (scene, of), answers in self._scores.items():
-            kept = {name: min((answers[kind].time for kind in kinds if kind in answers and answers[kind].kept), default=None)
-                    for name, kinds in self.SHORT.items()}
-            times = [time for time in kept.values() if time is not None]
-            if of == level and times:
-                best = _fastest(answers)
-                rows.append([scene, *("–" if time is None else _bold(f"{time / min(times):.2g}", best & set(self.SHORT[name]))
-                                      for name, time in kept.items())])
-        return _markdown(rows)
-
-    def fastest(self, kind):
-        """Where this kind alone is the fastest; "" if nowhere."""
-        return _places(place for place, answers in self._scores.items() if _fastest(answers) - {self.ANY} == {kind})
-
-    def among(self, kind):
-        """Where this kind is one of several fastest; "" if nowhere."""
-        return _places(place for place, answers in self._scores.items() if {kind} < _fastest(answers) - {self.ANY})
-
-    def chosen(self, kind, words):
-        """Where the setting of this kind has these words; "" if nowhere."""
-        return _places(place for place, answers in self._scores.items()
-                       if kind in answers and words in answers[kind].setting)
-
-    @functools.cached_property
-    def _scores(self):
-        """{(scene, level): {kind: Answer}}, of the kinds with a setting"""
-        lines, made = self._lines("score"), {}
-        for found in filter(None, map(re.compile(r"(.+), error (\S+ %)").match, lines)):
-            block, answers = found.group(), made.setdefault(found.groups(), {})
-            for kind in self.KINDS if not any(line.startswith(f"{block}: ") for line in lines) else ():
-                time, error, interval, setting = (
-                    find_cell(lines, block, block, kind, column) for column in ("ms/s", "error there", "95 %", "setting"))
-                if time != "-":
-                    low, high = map(Decimal, interval.split(" to "))
-                    answers[kind] = Answer(Decimal(time), re.fullmatch(r"[\d.e-]+ %", error) is not None, low, high, setting)
-        return made
 
     def cheapest(self, name, blocks):
         """A Markdown table of the fastest combinations of each kind in a table of combinations: times in µs."""
@@ -175,7 +102,7 @@ class Tables:
             times = {kind: find_cell(inside, "*", "the cheapest", kind, "µs") for kind in kinds}
             rows.append([text, f"{int(joints):,}", *(_time(times[kind]) + _ways(settings[kind]) for kind in kinds),
                          *(find_cell(inside, "*", "the cheapest", kind, over) for kind, over in factors)])
-        return _markdown(rows)
+        return scores.markdown(rows)
 
     def table(self, text, address):
         """A Markdown table with the numbers of its address."""
@@ -232,41 +159,6 @@ def find_cell(lines, section, block, row, column):
     raise NotFound(f"row {row!r}")
 
 
-def _fastest(answers):
-    """The kinds that keep to the error and whose interval lies above no other's."""
-    kept = {kind: answer for kind, answer in answers.items() if answer.kept}
-    least = min((answer.high for answer in kept.values()), default=None)
-    return {kind for kind, answer in kept.items() if answer.low <= least}
-
-
-def _bold(text, is_bold):
-    return f"**{text}**" if is_bold else text
-
-
-def _time_text(answer, fastest):
-    if answer is None:
-        return "–"
-    text = f"{answer.time.normalize():f}"
-    return _bold(text, fastest) if fastest or answer.kept else f"({text})"
-
-
-def _places(found):
-    """[("helix", "1 %"), ("knot", "1 %"), ("knot", "10 %")] as "helices at 1 % and knots at 1 and 10 %"."""
-    levels = {}
-    for scene, level in found:
-        levels.setdefault(scene, []).append(level.removesuffix(" %"))
-    plural = {"helix": "helices", "falling rods": "falling rods"}
-    return _listed([f"{plural.get(scene, scene + 's')} at {_listed(given)} %" for scene, given in levels.items()])
-
-
-def _listed(words):
-    return " and ".join([", ".join(words[:-1]), words[-1]] if words[1:] else words)
-
-
-def _markdown(rows):
-    return "\n".join(f"| {' | '.join(row)} |" for row in (rows[0], ["---"] * len(rows[0]), *rows[1:]))
-
-
 def _time(cell):
     """"931 [912, 958] (4 of 5)" as "931 (4 of 5)"."""
     return re.sub(r" \[.*?\]", "", cell)
@@ -313,15 +205,14 @@ def styled(number, style):
     return text.replace("-", "−") if "−" in style else text
 
 
-def rendered(template, folder=TABLES):
-    """The text of a page."""
+def rendered(template, folder=TABLES, root=ROOT):
+    """The text of a page. `root` has the score's scenes."""
     tables = Tables(folder)
     environment = jinja2.Environment(keep_trailing_newline=True, trim_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters["table"] = tables.table
     with open(template, encoding="utf-8") as file:
         return environment.from_string(file.read()).render(
-            cell=tables.cell, score=tables.score, answer=tables.answer, fastest=tables.fastest, among=tables.among,
-            chosen=tables.chosen, cheapest=tables.cheapest)
+            cell=tables.cell, cheapest=tables.cheapest, score=scores.Scores(root))
 
 
 def templates(root=ROOT):
