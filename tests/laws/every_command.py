@@ -33,7 +33,8 @@ import h5py  # noqa: E402
 import matplotlib.figure  # noqa: E402
 import numpy as np  # noqa: E402
 from program import RODSWEEP, ROD, Case, rodsweep, write_job  # noqa: E402
-from rodsweep.scoring import answers, settings  # noqa: E402
+from rodsweep.reading.job_paths import checksum  # noqa: E402
+from rodsweep.scoring import answers, scenes, settings  # noqa: E402
 
 os.environ.update(RODSWEEP=os.path.abspath(RODSWEEP), PMIX_MCA_gds="hash")    # else Open MPI needs room for files
 CODES = {name: int(number) for name, number in re.findall(
@@ -125,11 +126,12 @@ class Inputs:
         """A scene and what was measured of it."""
         (root / "jobs" / "score").mkdir(parents=True)
         shutil.copy(SOURCE / "jobs" / "score" / "bending_rod_draws.json", root / "jobs" / "score" / "rod_draws.json")
-        measured = root / "analysis" / "results" / "score" / "rod.json"
-        measured.parent.mkdir(parents=True)
+        scene = scenes.Scene("rod", root)
+        os.makedirs(os.path.dirname(scene.measured("")))
         some = [answers.Answer(0.01, kind, settings.direct(settings.Step(0.01 * time, "bdf2")), time, np.full((1, 5), 0.005),
                                0, 0, np.full((1, 3, 5), time)) for kind, time in (("direct solve", 1), ("CG, Jacobi", 2))]
-        answers.Scored("rod", "rod", "r", "2026-11-28", {}, {}, [0.01], {"rods": [1]}, some).write(measured)
+        answers.Scored("rod", "rod", checksum(scene.job), "r", "2026-11-28", {}, {}, [0.01], {"rods": [1]},
+                       some).write(scene.measured(".json"))
 
     def job(self, name, **changes):
         with contextlib.chdir(self.folder):

@@ -31,8 +31,7 @@ OUTPUT = ("", "cpp", "c")
 # {page: {first words of a line, or of a whole block in another language than sh: reason}}
 LEFT_OUT = {
     "README.md": {"make demo": "builds, minutes", "make test": "builds, minutes"},
-    "docs/extending.md": {"gcc ": "needs an installed header: command/plugin compiles and runs it",
-                          '    "mean": ': "a line of a file of the program"},
+    "docs/extending.md": {"gcc ": "needs an installed header: command/plugin compiles and runs it"},
     "docs/installing.md": {words: "installs packages, or needs a network" for words in (
         "make install", "make uninstall", "cmake ", "docker ", "apptainer ", "mpirun ", "srun ", "spack ", "conda ")},
     "docs/jobs.md": {"build/rodsweep run jobs/networks/bending_data.json": "720 MB"},
