@@ -138,8 +138,8 @@ NOT_ON_HELICES = {"size_16", "size_64", "steps_2", "steps_8", "hidden_layers_3",
 
 
 def of_the_score(name, data, changes=None, which=""):
-    """Networks of which every simulation trains fewer epochs than the shipped ones (rods_variants.txt, lattices_variants.txt:
-    an eighth of the epochs of rods.h5 leaves 6 % more iterations at 1e-2)."""
+    """Three trainings of a network. Large ones need few epochs: an eighth of those of rods.h5 leaves 6 % more iterations
+    at 1e-2 (rods_variants.txt)."""
     variants = {name.replace("_", "-") + suffix: {"seed": seed, "data": f"every_step_of_{which}{data}"}
                 for suffix, seed in SEEDS.items()}
     return Family(f"train_{name}", f"score_{data}", changes or {}, variants, f"{data}_data")
