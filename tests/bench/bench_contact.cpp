@@ -12,8 +12,8 @@
 
 #include "solver/contact/contact_projection.hpp"
 #include "solver/scene/scene_parts.hpp"
-#include "solver/scene/scenes.hpp"
 #include "solver/step/time_step.hpp"
+#include "tests/bench/contact_scenes.hpp"
 #include "tests/bench/medians.hpp"
 
 namespace {
@@ -141,29 +141,12 @@ void print_steps(const char* name, const SceneSpec& spec, double dt, int steps) 
               step / newton / solve, 100.0 * static_cast<double>(fine) / static_cast<double>(times.size()));
 }
 
-template <class Spec>
-Spec touching(double radius_m, double youngs_modulus_pa, double torsion_modulus_pa) {
-  Spec p;
-  p.radius_m = radius_m;
-  p.youngs_modulus_pa = youngs_modulus_pa;
-  p.torsion_modulus_pa = torsion_modulus_pa;
-  p.contact = ContactSettings{};
-  return p;
-}
-
 void print_steps() {
   std::printf("\nWhole steps in contact [ms], six Newton iterations at most\n");
   std::printf("%-14s %6s %10s %10s %8s %16s %16s\n", "scene", "steps", "step", "solve", "Newton", "solves/iteration",
               "residual<1e-5, %");
-  auto lattice = touching<Lattice>(0.015, 1e7, 4e6);
-  lattice.cell = Lattice::Cell::octet;
-  lattice.nodes_x = 3;
-  lattice.mesh_m = 0.3;
-  lattice.held = Held::free;
-  lattice.initial_angle_deg = 30;
-  lattice.damping_per_s = 2;
+  auto lattice = dropped_octet_lattice();
   lattice.contact->friction = 0.5;
-  lattice.obstacles = {HalfSpace{{0, -0.4, 0}, {0, 1, 0}, {0, 0, 0}}};
   print_steps("octet lattice", lattice, 0.004, 300);
   auto falling = touching<FallingRods>(0.03, 1e7, 1e7);
   falling.rods = 6;

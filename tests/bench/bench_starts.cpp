@@ -22,8 +22,8 @@
 #include "runner/file/provenance.hpp"
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/cg/petsc_session.hpp"
-#include "solver/scene/scenes.hpp"
 #include "solver/step/time_step.hpp"
+#include "tests/bench/contact_scenes.hpp"
 
 namespace {
 
@@ -77,16 +77,6 @@ Lattice lattice(int nodes) {
   lattice.torsion_modulus_pa = 4e6;
   lattice.damping_per_s = 1;
   return lattice;
-}
-
-template <class Spec>
-Spec touching(double radius_m, double youngs_modulus_pa, double torsion_modulus_pa) {
-  Spec spec;
-  spec.radius_m = radius_m;
-  spec.youngs_modulus_pa = youngs_modulus_pa;
-  spec.torsion_modulus_pa = torsion_modulus_pa;
-  spec.contact = ContactSettings{};
-  return spec;
 }
 
 // ---- exact start ----
@@ -344,13 +334,5 @@ int main() {
   auto heap = falling;
   heap.rods = 30;
   print_contacts("heap of 30", heap, 0.005, 200);
-  auto dropped = touching<Lattice>(0.015, 1e7, 4e6);
-  dropped.cell = Lattice::Cell::octet;
-  dropped.nodes_x = 3;
-  dropped.mesh_m = 0.3;
-  dropped.held = Held::free;
-  dropped.initial_angle_deg = 30;
-  dropped.damping_per_s = 2;
-  dropped.obstacles = {HalfSpace{{0, -0.4, 0}, {0, 1, 0}, {0, 0, 0}}};
-  print_contacts("octet lattice", dropped, 0.004, 150);
+  print_contacts("octet lattice", dropped_octet_lattice(), 0.004, 150);
 }
