@@ -196,7 +196,7 @@ OTHERS = {
         *film("twisted", 0, "twisted", "along"), *film("pulled", 0, "pulled", "along")]),
     "benchmark": Study("linear systems and our iterations on them, for use elsewhere: results/benchmark, 350 MB", "10 min", [
         *run("benchmark"), "analysis/benchmark_data.py results/benchmark.h5 -o results/benchmark"]),
-    "demo": Study("a first report", "a few minutes", run("demo")),
+    "demo": Study("a first report", "half a minute", run("demo")),
 }
 
 
