@@ -19,6 +19,8 @@ import os
 import sys
 from dataclasses import replace
 
+import numpy as np
+
 from rodsweep.drawing import layout, study, style
 from rodsweep.reading import commandline
 from rodsweep.reading.job_paths import checksum
@@ -144,13 +146,14 @@ def figure(scored, width_mm):
                        note, left_mm=12, gap_mm=9)
     for column, (axes, one) in enumerate(zip(page.axes[0], scored)):
         for shift, (kind, look) in enumerate(looks.items()):
-            found = [(level, of[kind].time) for level in one.levels if kind in (of := one.at(level)) and of[kind].kept]
-            if found:
-                axes.plot([level * 1.05 ** (shift - len(shown) // 2) for level, _ in found], [1e3 * time for _, time in found],
-                          **look.line(), linewidth=0.9, markersize=2.8)
+            kept = [1e3 * of[kind].time if kind in (of := one.at(level)) and of[kind].kept else np.nan for level in one.levels]
+            axes.plot([level * 1.05 ** (shift - len(shown) // 2) for level in one.levels], kept,
+                      **look.line(), linewidth=0.9, markersize=2.8)
         axes.set(xscale="log", yscale="log", xlim=(2 * scenes.LEVELS[0], scenes.LEVELS[-1] / 2))
+        layout.set_ticks(axes.yaxis, layout.log_ticks(*axes.get_ylim()))
         page.title(axes, one.title)
-        page.label_y(axes, column, "ms per simulated second")
+        if column % page.columns == 0:
+            axes.set_ylabel("ms per simulated second", labelpad=2)
     page.label_x(0, "error / size of the scene")
     return page
 
