@@ -93,7 +93,7 @@ def search_of(scene, work, workers, complete=False):
     smaller = scenes.SMALLER.get(scene.name)
     if smaller:
         smaller = Runs(scenes.Scene(smaller, scene.root), work, workers, say)
-        smaller.require_published()
+        smaller.require_timed()
     return Search(Runs(scene, work, workers, say, complete), smaller)
 
 

@@ -375,7 +375,11 @@ class Small(unittest.TestCase):
         self.assertRegex(lines[8], "^your guess +[0-9.]+ .* from python none to ")
 
     def test_a_scene_without_results_says_how_to_measure_it(self):
-        done = run("score.py", "tree")
+        root = os.path.join(self.folder.name, "unmeasured")
+        shutil.copytree(os.path.join(self.folder.name, "jobs"), os.path.join(root, "jobs"))
+        done = run("score.py", "rod", "--root", root)
         self.assertEqual(done.code, 2)
-        self.assertIn("tree was not measured: run score.py --errors tree, then --times tree", done.stderr)
+        self.assertIn("rod was not measured: run score.py --errors rod, then --times rod", done.stderr)
+        with self.assertRaisesRegex(KeyNotFound, "rod comes first: run score.py --errors rod, then --times rod"):
+            Runs(scenes.Scene("rod", root), self.work, 1).require_timed()    # before a scene that uses what is known of it
         self.assertIn("scene 'trees'", run("score.py", "trees").stderr)

@@ -78,9 +78,11 @@ class Runs:
             self.known = {key: replace(of, time_s=of.time_s * entry["scale"]) for key, of in self.known.items()}
             self._last = entry["made"]
 
-    def require_published(self):
-        if not os.path.exists(self.scene.measured(".jsonl.xz")):
-            raise KeyNotFound(f"the search of {self.scene.name} comes first: run score.py --errors {self.scene.name}")
+    def require_timed(self):
+        """A search may be published before it is complete, but only a complete one is timed."""
+        if not os.path.exists(self.scene.measured(".json")):
+            raise KeyNotFound(f"{self.scene.name} comes first: run score.py --errors {self.scene.name}, then --times "
+                              f"{self.scene.name}")
 
     def publish(self):
         os.makedirs(os.path.dirname(self.scene.measured("")), exist_ok=True)
