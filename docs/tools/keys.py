@@ -18,10 +18,10 @@ HEAD = """# Keys of a job
 Every key that a job file may have, as the program reads it. `make schema` makes this page of
 [jobs/schema.json](../jobs/schema.json). What the keys are for: [jobs](jobs.md).
 
-- A key without a default is *required* wherever it is allowed; one that is allowed everywhere has no word about it.
-- A value that may be swept may also be `{"grid": [...]}` or `{"zip": [...]}`; a number `{"uniform": [a, b]}`,
-  `{"log_uniform": [a, b]}` or `{"integer": [a, b]}`, a whole number the last of these alone. Objects are swept as a
-  whole or inside: [sweeps](jobs.md#sweeps).
+- *required*: the key has no default. An empty last cell: the key is allowed everywhere.
+- Instead of a value that may be swept, write `{"grid": [...]}` or `{"zip": [...]}`; for a number also
+  `{"uniform": [a, b]}` or `{"log_uniform": [a, b]}`, for any number `{"integer": [a, b]}`. Objects are swept as a whole or
+  inside: [sweeps](jobs.md#sweeps).
 - Paths of files are relative to the job file.
 """
 SWEEPS = {"grid", "zip", "uniform", "log_uniform", "integer"}
