@@ -192,12 +192,13 @@ def called(cell):
 
 
 def styled(number, style):
-    """A number in the style of another."""
+    """A number in the style of another, with at most the digits that it has."""
     mantissa, exponent, _ = style.lower().partition("e")
     digits, value = len(mantissa.partition(".")[2]), Decimal(number.replace("−", "-").replace(",", ""))
     if exponent:
         text = re.sub(r"e([+-])0*(\d)", lambda e: "e" + e.group(1).replace("+", "") + e.group(2), f"{value:.{digits}e}")
     else:
+        digits = min(digits, max(0, -value.as_tuple().exponent))
         rounded = value.quantize(Decimal(1).scaleb(-digits), ROUND_HALF_UP)
         text = f"{rounded:,}" if "," in style else f"{rounded}"
     if mantissa.lstrip("-−").startswith("."):

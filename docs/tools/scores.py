@@ -21,7 +21,7 @@ SHORT = {"direct solve": (settings.DIRECT,), "CG, no network": (settings.ZERO, s
 
 class Scores:
     """Of the scenes in `root`/jobs/score that were measured."""
-    learned = SHORT["CG, network"]
+    learned, without_network = SHORT["CG, network"], SHORT["CG, no network"]
 
     def __init__(self, root):
         self.scenes = [scenes.Scene(name, root) for name in scenes.names(root)]
@@ -66,8 +66,8 @@ class Scores:
                        if (best := _fastest(of) - {settings.JACOBI}) & set(kinds) and not best <= set(kinds))
 
     def chosen(self, kind, words):
-        """Where the setting of this kind has these words; "" if nowhere."""
-        return _places(row for row, of in self._rows.items() if kind in of and words in of[kind].setting.text())
+        """Where the setting of this kind has these words and keeps to the error; "" if nowhere."""
+        return _places(row for row, of in self._rows.items() if kind in of and of[kind].kept and words in of[kind].setting.text())
 
     def chooser(self):
         """A Markdown table: the time of the base over that of the cheapest timed setting of any kind for each draw, among

@@ -174,6 +174,7 @@ class Pages(unittest.TestCase):
 
     def test_halves_are_rounded_up(self):
         self.assertEqual([pages.styled(number, ".0") for number in ("0.25", "0.35", "0.05")], [".3", ".4", ".1"])
+        self.assertEqual([pages.styled(number, "0.000") for number in ("0.3", "3", "2e-3")], ["0.3", "3", "0.002"])
 
     def test_whole_tables_by_their_rows_and_columns(self):
         template = """above
