@@ -166,7 +166,8 @@ def figure(shown, panels):
             axes.plot([float(line.second_ms[k].value) for k in kept], [float(line.error[k].value) for k in kept],
                       **looks[kind].line(), linewidth=0.9, markersize=3)
         axes.set(xscale="log", yscale="log")
-        layout.set_ticks(axes.xaxis, layout.log_ticks(*axes.get_xlim()))
+        for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+            layout.set_ticks(axis, layout.log_ticks(*limits))
         page.title(axes, title)
         if column == 0:
             axes.set_ylabel("error / size of the scene", labelpad=2)

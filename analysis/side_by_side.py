@@ -108,8 +108,9 @@ def figure(shown, found, apart, options):
         axes.xaxis.set_major_locator(MaxNLocator(4))
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.set_title(f"{moment:g} s")
+        axes.set_xlabel("across (m)", labelpad=2)
         if k % page.columns == 0:
-            axes.set_ylabel("m", labelpad=2)
+            axes.set_ylabel("height (m)", labelpad=2)
     for name, one in found.items():
         if np.any(apart[name] > 0):
             time = one.time_s[:len(apart[name])]
@@ -117,7 +118,9 @@ def figure(shown, found, apart, options):
     last.set_yscale("log")
     if options.log_time:
         last.set_xscale("log")
-    last.set_title("distance (m) over time (s)")
+    last.set_title("distance")
+    last.set_xlabel("time (s)", labelpad=2)
+    last.set_ylabel("m", labelpad=2)
     return page
 
 

@@ -67,7 +67,8 @@ class Scores:
 
     def chosen(self, kind, words):
         """Where the setting of this kind has these words and keeps to the error; "" if nowhere."""
-        return _places(row for row, of in self._rows.items() if kind in of and of[kind].kept and words in of[kind].setting.text())
+        return _places(row for row, of in self._rows.items()
+                       if kind in of and of[kind].kept and words in of[kind].setting.text())
 
     def chooser(self):
         """A Markdown table: the time of the base over that of the cheapest timed setting of any kind for each draw, among
