@@ -17,7 +17,6 @@ from rodsweep.reading.errors import SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.results import Results
 
-TASKS_FAILED, DIVERGED = 3, 9            # exit codes of a run with results
 FAILURES_SHOWN = 5                       # as many as the program prints
 
 
@@ -115,8 +114,8 @@ class Job:
         with self._file() as (path, renamed):
             if options or not self._is_complete(results, path):
                 code, _ = program.call("run", path, *words, renamed=renamed, show=line() if progress else None,
-                                       accepted=(0, TASKS_FAILED, DIVERGED))
-        if code == DIVERGED:
+                                       accepted=(0, program.TASKS_FAILED, program.DIVERGED))
+        if code == program.DIVERGED:
             warnings.warn(f"{self.name}: the training diverged; {results} has its best model", JobWarning, stacklevel=2)
         if self._values["kind"] == "train":
             return results

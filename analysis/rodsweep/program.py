@@ -18,6 +18,7 @@ from pathlib import Path
 from rodsweep import reading
 from rodsweep.reading.errors import UserError
 
+TASKS_FAILED, DIVERGED = 3, 9    # exit codes of a run with results
 CLEAR = "\x1b[K"
 STATUS = re.compile(re.escape(CLEAR) + r"\[[#.]+\] ")    # written by runner/terminal/progress.cpp
 

@@ -22,7 +22,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rodsweep.program import JobWarning, call
+from rodsweep.program import TASKS_FAILED, JobWarning, call
 from rodsweep.reading import accuracy, job_paths, measures
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
@@ -30,7 +30,6 @@ from rodsweep.scoring.scenes import TUNING
 from rodsweep.scoring.settings import OWN, Setting
 from rodsweep.writing import outputs
 
-SOME_FAILED = 3     # the program's exit code for a complete sweep in which simulations failed
 AT_ONCE = 250       # settings in a job
 COMPARED = 5        # settings that are simulated again with another program or machine
 SAME_TO = 1e-3      # relative; errors are stored with four digits
@@ -196,7 +195,7 @@ def run_job(job, path, *words):
         json.dump(job, file)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", JobWarning)
-        call("run", given, "-o", path, *words, renamed={given: job["name"]}, accepted=(0, SOME_FAILED))
+        call("run", given, "-o", path, *words, renamed={given: job["name"]}, accepted=(0, TASKS_FAILED))
 
 
 def _reference(path):
