@@ -48,7 +48,7 @@ MINUTES = {    # left out unless long
         "sed ", "     s/", "for task in", "/usr/bin/python3 train.py", "rodsweep run training.json",
         "rodsweep run modes_guess.json", "rodsweep summary results/modes_guess.h5")},
     "docs/pictures.md": {words: "minutes of rendering" for words in (
-        "build/rodsweep ", "analysis/", "for job in", "printf ")},
+        "build/rodsweep ", "analysis/", "printf ")},
 }
 # What readers of a page have: the job of the README, its results, and those of the demo, all with fewer tasks; a curve.
 GIVEN = {"frame.csv": ("docs/curves.md",), "my.json": ("docs/faults.md", "docs/running.md"),
