@@ -174,6 +174,8 @@ class Pages(unittest.TestCase):
 
     def test_halves_are_rounded_up(self):
         self.assertEqual([pages.styled(number, ".0") for number in ("0.25", "0.35", "0.05")], [".3", ".4", ".1"])
+
+    def test_a_number_gets_no_digits_that_it_does_not_have(self):
         self.assertEqual([pages.styled(number, "0.000") for number in ("0.3", "3", "2e-3")], ["0.3", "3", "0.002"])
 
     def test_whole_tables_by_their_rows_and_columns(self):
