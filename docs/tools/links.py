@@ -22,6 +22,8 @@ HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*#*$")
 SENTENCE_END = re.compile(r"(?<=[.!?])[)*”]*\s+")
 LINK_TEXT = re.compile(r"(!?)\[([^]]*)\]\([^)]*\)")
 MOST_WORDS, MOST_CHARACTERS = 60, 900
+CODE = re.compile(r"(?<!`)(`+)(?!`)(?:(?!\n *\n).)*?(?<!`)\1(?!`)", re.S)
+COMMENT = re.compile(r"<!--.*?-->", re.S)
 BAR = re.compile(r"(?<!\\)\|")
 
 
@@ -62,13 +64,17 @@ def anchors(root, page):
 
 
 def targets(root, page):
-    """(number of the line, target) of every relative link."""
+    """(number of the line, target) of every relative link, also if its text goes on in the next line."""
+    text, count = "", 0
     for number, line in lines_of(root, page):
-        shown = re.sub(r"<!--.*?-->", "", re.sub(r"(?<!`)(`+)(?!`).*?(?<!`)\1(?!`)", "", line))
-        for found in LINK.finditer(shown):
-            target = found.group(1) or found.group(2)
-            if not re.match(r"[a-z]+:|//", target):
-                yield number, target
+        text += "\n" * (number - count) + line
+        count = number
+    for ignored in (CODE, COMMENT):
+        text = ignored.sub(lambda found: re.sub(r"[^\n]", " ", found.group()), text)
+    for found in LINK.finditer(text):
+        target = found.group(1) or found.group(2)
+        if not re.match(r"[a-z]+:|//", target):
+            yield text.count("\n", 0, found.end()), target
 
 
 def files_of(root, page):
@@ -125,11 +131,12 @@ def paragraphs(root, page):
     for number, line in [*lines_of(root, page), (0, "")]:
         apart = not line.strip() or line.startswith(("#", "|"))
         if words and (apart or ITEM.match(line.lstrip())):
-            yield first, " ".join(words)
+            text = LINK_TEXT.sub(lambda link: "" if link.group(1) else link.group(2), " ".join(words))
+            yield first, " ".join(text.split())
             words = []
         if not apart:
             first = first if words else number
-            words += LINK_TEXT.sub(lambda link: "" if link.group(1) else link.group(2), line).split()
+            words += line.split()
 
 
 def wrong_lengths(root, page):

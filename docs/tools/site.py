@@ -34,11 +34,14 @@ def main():
         sys.exit("usage: docs/tools/site.py OUTPUT")
     output = os.path.abspath(sys.argv[1])
     lay_out(ROOT, f"{output}-pages")
-    command = ["/usr/bin/mkdocs", "build", "--strict", "--quiet", "-f", os.path.join(ROOT, "mkdocs.yml"), "-d", output]
-    done = subprocess.run(command, env={**os.environ, "RODSWEEP_SITE_PAGES": f"{output}-pages"}, check=False)
+    command = ["/usr/bin/mkdocs", "build", "--strict", "-f", os.path.join(ROOT, "mkdocs.yml"), "-d", output]
+    done = subprocess.run(command, env={**os.environ, "RODSWEEP_SITE_PAGES": f"{output}-pages"}, check=False,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode == 0:
         shown = os.path.relpath(output)
         print(f"{shown}/index.html; for its search: python3 -m http.server -d {shown}, then http://localhost:8000")
+    else:
+        print(done.stdout, file=sys.stderr)
     return done.returncode
 
 

@@ -43,7 +43,8 @@ class Links(unittest.TestCase):
         for change, words in ((("a.png", "b.png"), "docs/page.md:2: b.png: there is no docs/b.png"),
                               (("#what-it-is", "#what-it-was"), "README.md has no heading #what-it-was"),
                               (("#a-page", "#page"), "docs/page.md has no heading #page-of-two_words-once--more"),
-                              (("../README", "README"), "there is no docs/README.md")):
+                              (("../README", "README"), "there is no docs/README.md"),
+                              (("![a picture](a.png)", "[a\n  picture](b.png)"), "docs/page.md:3: b.png: there is no")):
             wrong = self.check(PAGE.replace(*change))
             self.assertEqual(len(wrong), 1, wrong)
             self.assertIn(words, wrong[0])
