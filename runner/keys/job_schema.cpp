@@ -16,7 +16,9 @@ using Json = nlohmann::ordered_json;
 
 Json reference(const std::string& definition) { return {{"$ref", "#/definitions/" + definition}}; }
 
-std::string description(const Key& key) { return key.help + (key.unit.empty() ? "" : " [" + key.unit + "]"); }
+std::string with_unit(const std::string& text, const Key& key) {
+  return text + (key.unit.empty() ? "" : " [" + key.unit + "]");
+}
 
 Json bounded(const char* type, const Key& key) {
   Json schema{{"type", type}};
@@ -67,7 +69,7 @@ class SchemaWriter {
     }
     // Draft-07 ignores all keys beside a $ref.
     if (schema.contains("$ref")) schema = Json{{"allOf", Json::array({schema})}};
-    if (!schema.contains("description")) schema["description"] = description(key);
+    if (!schema.contains("description")) schema["description"] = with_unit(key.help, key);
     if (key.preset && !key.preset->is_object()) schema["default"] = *key.preset;
     return schema;
   }
@@ -144,7 +146,7 @@ class SchemaWriter {
       };
       if (!child.alias.empty()) {
         properties[child.alias] = properties[child.name];
-        properties[child.alias]["description"] = "the same as " + child.name;
+        properties[child.alias]["description"] = with_unit("the same as " + child.name, child);
         for (const std::string& name : {child.name, child.alias}) one_of(child.name, name);
       } else if (!child.alternative_group.empty()) {
         one_of(child.alternative_group, child.name);
@@ -200,7 +202,7 @@ class SchemaWriter {
 
   static Json label() {
     Json schema = text(guess_label_key());
-    schema["description"] = description(guess_label_key());
+    schema["description"] = guess_label_key().help;
     return schema;
   }
 
@@ -212,7 +214,7 @@ class SchemaWriter {
     Json words = Json::array(), properties = Json::object();
     for (const Key& key : guess_keys()) {
       properties[key.name] = object(key, "guess." + key.name);
-      properties[key.name]["description"] = description(key);
+      properties[key.name]["description"] = with_unit(key.help, key);
       if (labelled) properties[key.name]["properties"][guess_label_key().name] = label();
       bool complete = true;
       for (const Key& parameter : key.keys) complete = complete && parameter.preset;
