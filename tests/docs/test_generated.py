@@ -108,7 +108,8 @@ class Pages(unittest.TestCase):
                              ("fastest('CG from zero')", ""), ("among('CG from zero')", "nets at 10 %"),
                              ("fastest('CG, classical guess')", ""),    # its errors are too large
                              ("chosen('CG, Jacobi', 'direct')", "helices at 10 % and nets at 10 %"), ("missing()", ""),
-                             ("chosen('Gauss-Seidel', '')", ""), ("made_by()", "r (2026-11-29)")):
+                             ("chosen('Gauss-Seidel', '')", ""), ("chosen('CG, classical guess', '')", ""),
+                             ("made_by()", "r (2026-11-29)")):
             self.assertEqual(self.score("{{ score." + asked + " }}").strip(), found, asked)
         self.assertEqual(scores._places([("tree", "1 %"), ("tree", "0.1 %"), ("tree", "10 %"), ("knot", "1 %")]),
                          "trees at 1, 0.1 and 10 % and knots at 1 %")
