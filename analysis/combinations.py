@@ -145,14 +145,13 @@ def figure(shown, panels, found):
     bounds = [v for row in estimates for one in row for e in one.values() for v in (e.value, e.low, e.high)
               if np.isfinite(v)]
     low, high = 0.8 * min(bounds), 1.25 * max(bounds)
+    joints = [cell.joints for cells in found for cell in cells]
     for k, (axes, cells, row, title) in enumerate(zip(page.axes[0], found, estimates, titles)):
         for kind in there:
             at = [c for c, one in enumerate(row) if kind in one]
             style.errorbar(axes, [cells[c].joints for c in at], [row[c][kind] for c in at], **style.WHISKERS,
                            **STYLES[kind].line())
-        axes.set(xscale="log", yscale="log", ylim=(low, high))
-        joints = [cell.joints for cell in cells]
-        axes.set_xlim(0.7 * min(joints), 1.4 * max(joints))
+        axes.set(xscale="log", yscale="log", xlim=(0.7 * min(joints), 1.4 * max(joints)), ylim=(low, high))
         for axis, bound in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, (low, high))):
             ticks = layout.log_ticks(*bound)
             layout.set_ticks(axis, ticks[::-(-len(ticks) // 5)])

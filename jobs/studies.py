@@ -77,8 +77,12 @@ def spatial(scene):    # the table has all guesses, the figures those that can b
             origins(study)]
 
 
-def temporal(study, data):
-    return [*run(data, study), draw("temporal", study, "--tolerance 1e-2,1e-3,1e-4"), summary(study), origins(study)]
+def temporal(scene):
+    study = f"temporal_{scene}"
+    guesses = ("quadratic,regression 6,subspace 10,deflation 10,copingnet rods-large,"
+               f"copingnet {scene}-paper,copingnet {scene}-paper-best,knn 3")
+    return [*run(f"{scene}_data", study), draw("temporal", study, f'--tolerance 1e-2,1e-3,1e-4 --guess "{guesses}"'),
+            summary(study), origins(study)]
 
 
 def generalisation(what, key):
@@ -116,7 +120,7 @@ STUDIES = {
     "spatial": Study("effect of the number of segments: the network of Shao et al., ours, all classical guesses", "30 min",
                      [*spatial("bending"), *spatial("helix")]),
     "temporal": Study("development over simulated time", "8 min",
-                      [*temporal("temporal_bending", "bending_data"), *temporal("temporal_helix", "helix_data")]),
+                      [*temporal("bending"), *temporal("helix")]),
     "side_by_side": Study("one rod by the direct solve, by CG with a learned guess and by networks alone", "1 min", [
         *run("side_by_side"), to("side_by_side", draw("side_by_side", "side_by_side", "--log-time")),
         origins("side_by_side")]),

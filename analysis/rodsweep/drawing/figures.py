@@ -70,7 +70,7 @@ def speedup_figure(study, by_newton):
     page = layout.Page(width, [p.caption() for p in study.panels], 3, 3, 40 if study.wide else 34, handles,
                       notes + [study.about()], study.timing_warning(), ticks_mm=_ticks_mm(study))
     shown += [d for row in rows for pairs in row.values() for _, d in pairs]
-    limits = _limits(shown, 0.8, 1.25, 0.08)
+    limits = _limits(shown, 0.8, 1.25)
     for axes_row, points, row in zip(page.axes, study.points, rows):
         for k, (axes, (name, title)) in enumerate(zip(axes_row, timings.SPEEDUPS.items())):
             curves = [([e[g] for e, _ in row[name]], study.style(g), None) for g in lines]
@@ -106,7 +106,7 @@ def four_curves_figure(study, by_newton):
     page = layout.Page(study.width_mm, [p.caption() for p in study.panels], len(learned),
                        layout.even_columns(len(learned), 3 if study.wide else 1), 42, handles,
                        notes + [study.about()], study.timing_warning(), gap_mm=6, ticks_mm=_ticks_mm(study))
-    low, high = _limits(shown, 0.5, 2, 0.1)
+    low, high = _limits(shown, 0.5, 2)
     for axes_row, points, row in zip(page.axes, study.points, rows):
         for k, (axes, g) in enumerate(zip(axes_row, learned)):
             _curves(axes, points, [([at[name][g] for at in row], style.FOUR_CURVES[name], None) for name in curves],
@@ -166,10 +166,11 @@ def _curves(axes, points, curves, slots):
     x.apply(axes)
 
 
-def _limits(estimates, low, high, margin):
-    """Limits of a logarithmic axis with all estimates and their intervals; at least these ones."""
-    bounds = [v for e in estimates for v in (e.value, e.low, e.high) if np.isfinite(v) and v > 0]
-    return min([low] + [(1 - margin) * b for b in bounds]), max([high] + [(1 + margin) * b for b in bounds])
+def _limits(estimates, low, high):
+    """Limits of a logarithmic axis with these values, all estimates and their intervals, and room for a marker."""
+    bounds = [low, high, *(v for e in estimates for v in (e.value, e.low, e.high) if np.isfinite(v) and v > 0)]
+    room = (max(bounds) / min(bounds)) ** 0.04
+    return min(bounds) / room, max(bounds) * room
 
 
 def _log_axis(axes, limits, text):
