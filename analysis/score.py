@@ -36,6 +36,7 @@ EXAMPLES = """examples:
   analysis/score.py --times net         # writes analysis/results/score/net.json
   analysis/score.py my_guess.py bending_rod     # a guess of yours (docs/own-guess.md)"""
 WORK = os.path.join("results", "score")
+MOST = 10    # of the figure's axis
 
 
 def arguments():
@@ -140,21 +141,23 @@ def show(scored, options):
 def figure(scored, width_mm):
     shown = [kind for kind in KINDS if kind != OWN]
     looks = dict(zip(shown, style.series_styles(len(shown))))
-    note = ["Processor time of a simulated second over the error of the motion: geometric mean over draws that did not choose "
-            "the settings. Only kinds that keep to the error there."]
+    note = ["Processor time over that of the fastest kind, at errors of the motion over the size of the scene: geometric means "
+            f"over draws that did not choose the settings. Only kinds that keep to the error there. More than {MOST} is "
+            "drawn at the upper edge."]
     page = layout.Page(width_mm, ["Cheapest settings"], len(scored), 4, 44, [look.handle(name) for name, look in looks.items()],
                        note, left_mm=12, gap_mm=9)
     for column, (axes, one) in enumerate(zip(page.axes[0], scored)):
+        kept = [{kind: answer.time for kind, answer in one.at(level).items() if answer.kept} for level in one.levels]
         for shift, (kind, look) in enumerate(looks.items()):
-            kept = [1e3 * of[kind].time if kind in (of := one.at(level)) and of[kind].kept else np.nan for level in one.levels]
-            axes.plot([level * 1.05 ** (shift - len(shown) // 2) for level in one.levels], kept,
-                      **look.line(), linewidth=0.9, markersize=2.8)
-        axes.set(xscale="log", yscale="log", xlim=(2 * scenes.LEVELS[0], scenes.LEVELS[-1] / 2))
-        layout.set_ticks(axes.yaxis, layout.log_ticks(*axes.get_ylim()))
+            axes.plot([level * 1.05 ** (shift - len(shown) // 2) for level in one.levels],
+                      [min(MOST, times[kind] / min(times.values())) if kind in times else np.nan for times in kept],
+                      **look.line(), linewidth=0.9, markersize=2.8, clip_on=False)
+        axes.set(xscale="log", yscale="log", xlim=(2 * scenes.LEVELS[0], scenes.LEVELS[-1] / 2), ylim=(0.9, MOST))
+        layout.set_ticks(axes.xaxis, scenes.LEVELS, lambda level: f"{100 * level:g} %")
+        layout.set_ticks(axes.yaxis, (1, 2, 5, MOST))
         page.title(axes, one.title)
-        if column % page.columns == 0:
-            axes.set_ylabel("ms per simulated second", labelpad=2)
-    page.label_x(0, "error / size of the scene")
+        page.label_y(axes, column, "time / the fastest")
+    page.label_x(0, "error of the motion")
     return page
 
 

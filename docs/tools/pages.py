@@ -22,6 +22,8 @@ line. A text in @<<...>> replaces the visible text there, and is not shown:
     | bending rods@<<Bending rod>> | .00 **.00** |
     {% endfilter %}
 
+{% filter wrapped %} ... {% endfilter %} breaks the lines of a paragraph or item anew.
+
 {{ score.times("10 %", "1 %") }} and the other functions of `score` are those of scores.py. {{ cheapest("net_gusts",
 {"8 × 8": "Net, scene.rows = 8:"}) }} is a table of the fastest combinations, with a row for each of these blocks.
 
@@ -33,6 +35,7 @@ import itertools
 import os
 import re
 import sys
+import textwrap
 from decimal import ROUND_HALF_UP, Decimal
 
 import jinja2
@@ -206,11 +209,19 @@ def styled(number, style):
     return text.replace("-", "−") if "−" in style else text
 
 
+def wrapped(text):
+    """The lines of a paragraph or item, 120 wide; links stay whole."""
+    words = re.sub(r"\[[^]]*\]\([^)]*\)", lambda link: link.group().replace(" ", "\0"), " ".join(text.split()))
+    lines = textwrap.fill(words, 120, break_long_words=False, break_on_hyphens=False,
+                          subsequent_indent="  " if words.startswith("- ") else "")
+    return lines.replace("\0", " ") + "\n"
+
+
 def rendered(template, folder=TABLES, root=ROOT):
     """The text of a page. `root` has the score's scenes."""
     tables = Tables(folder)
     environment = jinja2.Environment(keep_trailing_newline=True, trim_blocks=True, undefined=jinja2.StrictUndefined)
-    environment.filters["table"] = tables.table
+    environment.filters.update(table=tables.table, wrapped=wrapped)
     with open(template, encoding="utf-8") as file:
         return environment.from_string(file.read()).render(
             cell=tables.cell, cheapest=tables.cheapest, score=scores.Scores(root))

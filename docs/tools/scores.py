@@ -1,7 +1,8 @@
 """The score in pages: tables and sentences of analysis/results/score/NAME.json (docs/score.md).
 
-The fastest kinds of a row are the base and those that are not slower: faster, equal or not told apart. CG with Jacobi is
-left out where kinds are named, since its settings are among those of the others."""
+The fastest kinds of a row are the base and those that are equal to it or not told apart. If some are faster than the
+base, the fastest of them takes its place. CG with Jacobi is left out where kinds are named, since its settings are among
+those of the others."""
 
 import functools
 import os
@@ -10,7 +11,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "analysis"))
-from rodsweep.scoring import answers, scenes, settings  # noqa: E402
+from rodsweep.scoring import answers, scenes, settings, verdicts  # noqa: E402
 
 KINDS = {settings.DIRECT: "direct solve", settings.ZERO: "CG from zero", settings.CLASSICAL: "classical guess",
          settings.CALL: "one call of a network", settings.FACTORS: "learned preconditioner",
@@ -71,8 +72,9 @@ class Scores:
                        if kind in of and of[kind].kept and words in of[kind].setting.text())
 
     def chooser(self):
-        """A Markdown table: the time of the base over that of the cheapest timed setting of any kind for each draw, among
-        those whose error on this draw keeps to the level; geometric means."""
+        """A Markdown table: the time of the cheapest kind over that of the cheapest timed setting of any kind for each draw,
+        among those whose error on this draw keeps to the level; geometric means. Settings are chosen on two repetitions, and
+        compared on the third: the least of noisy times is too small."""
         levels = list(dict.fromkeys(level for _, level in self._rows))
         rows = [["", *levels]]
         for one in self._scored:
@@ -82,12 +84,16 @@ class Scores:
 
     @staticmethod
     def _gain(one, of):
-        base = next(answer for answer in of.values() if answer.verdict == answers.BASE)
-        times = np.array([np.exp(np.log(answer.time_s[0]).mean(axis=0)) for answer in one.answers])
-        keeps = np.array([answer.error[0] <= base.level for answer in one.answers]) & np.isfinite(times)
-        own = np.exp(np.log(base.time_s[0]).mean(axis=0))
-        best = np.minimum(np.where(keeps, times, np.inf).min(axis=0), own)
-        return f"{np.exp(np.nanmean(np.log(own / best))):.2f}"
+        cheapest = min((answer for answer in of.values() if answer.kept), key=lambda answer: answer.time)
+        settings_ = list({answer.setting: answer for answer in [cheapest, *one.answers]}.values())    # it is the first
+        times = np.array([np.log(answer.time_s).mean(axis=0) for answer in settings_])    # [setting, repetition, draw]
+        keeps = np.array([np.median(answer.error, axis=0) <= cheapest.level for answer in settings_])
+        keeps[0], gains = True, []
+        for out in range(times.shape[1]):
+            known = np.delete(times, out, axis=1).mean(axis=1)
+            best = np.where(keeps & np.isfinite(known), known, np.inf).argmin(axis=0)
+            gains.append(times[0, out] - np.take_along_axis(times[:, out], best[None], axis=0)[0])
+        return f"{np.exp(np.nanmean(gains)):.2f}"
 
     def missing(self):
         """The scenes that were not measured; "" if there are none."""
@@ -98,9 +104,24 @@ class Scores:
         """Revisions, and days."""
         return listed(sorted({f"{one.revision} ({one.date})" for one in self._scored}))
 
+    def rules(self):
+        """The version of the rules, and what was measured by an earlier one."""
+        now = [one.title for one in self._scored if one.protocol == answers.PROTOCOL]
+        before = {}
+        for one in self._scored:
+            if one.protocol != answers.PROTOCOL:
+                before.setdefault(one.protocol, []).append(one.title)
+        if not now:
+            return listed([str(version) for version in before])
+        return " ".join([str(answers.PROTOCOL), *(f"({listed(titles)}: {version})" for version, titles in before.items())])
+
 
 def _fastest(of):
-    return {kind for kind, answer in of.items() if answer.kept and answer.verdict != answers.SLOWER}
+    faster = [answer for answer in of.values() if answer.verdict == answers.FASTER]
+    if not faster:
+        return {kind for kind, answer in of.items() if answer.kept and answer.verdict != answers.SLOWER}
+    best = min(faster, key=lambda answer: answer.time)
+    return {kind for kind, answer in of.items() if answer.kept and verdicts.factor(answer.time_s, best.time_s).low <= 1}
 
 
 def _time_text(answer, fastest):

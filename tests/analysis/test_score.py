@@ -8,6 +8,7 @@ import re
 import shutil
 import tempfile
 import unittest
+from dataclasses import replace
 from unittest import mock
 
 import numpy as np
@@ -24,7 +25,7 @@ from rodsweep.scoring.settings import KINDS, OF_CG, OWN, Setting, Step
 
 PRETRAINED = os.path.join(os.environ["SOURCE_DIR"], "network", "pretrained")
 CG = (settings.ZERO, settings.CALL)
-FEW = {"INTEGRATORS": ("bdf2",), "STEPS_S": (0.02, 0.01), "NEWTON": (1,), "TOLERANCES": (1e-2, 1e-3), "LAGS": (0, 8),
+FEW = {"INTEGRATORS": ("bdf2",), "STEPS_S": (0.02, 0.01), "NEWTON": (1,), "TOLERANCES": (1e-2, 1e-3), "LAGS": (0, 4),
        "SWEEPS": (1,), "STOPS": (1,)}
 SCENE = {"name": "rod", "kind": "sweep", "seed": 1, "samples": 5, "evaluation": "closed_loop",
          "scene": {"type": "bending_rod", "segments": 6, "length_m": {"uniform": [1, 2]}, "radius_m": 0.05,
@@ -61,9 +62,9 @@ class Statistics(unittest.TestCase):
             made[0, :count] = value
             return made
 
-        for failed, counts in ((0, True), (2, True), (3, False)):
-            self.assertEqual(verdicts.admitted(with_some(np.inf, failed), 0.01), counts)
-            self.assertEqual(verdicts.kept(with_some(np.inf, failed), 0.01), counts)
+        for failed, admitted, kept in ((0, True, True), (1, True, True), (2, False, True), (3, False, False)):
+            self.assertEqual(verdicts.admitted(with_some(np.inf, failed), 0.01), admitted)
+            self.assertEqual(verdicts.kept(with_some(np.inf, failed), 0.01), kept)
         self.assertTrue(verdicts.admitted(with_some(0.02, 15), 0.01))
         few = with_some(0.02, 17)    # the 25th smallest bounds
         self.assertEqual([verdicts.admitted(few, 0.01), verdicts.kept(few, 0.01)], [False, True])
@@ -118,6 +119,27 @@ class Settings(unittest.TestCase):
                 self.assertEqual(texts.setdefault(setting.text(), setting), setting)
                 self.assertEqual(setting.of_training(2).of_training(1), setting)
                 self.assertEqual(len(setting.trainings()), 3 if "/score/" in setting.solve + setting.guess else 1)
+
+    def test_what_is_kept_for_some_steps_is_renewed_about_as_often_as_in_the_long_run(self):
+        scene, cholesky = scenes.Scene("bending_rod"), settings.Way('{"preconditioner": "lagged_cholesky"}', 1e-2, '"zero"')
+        kept = {name: settings.Way(f'{{"lag_steps": {lag}, "preconditioner": "block_icc"}}', 1e-2, '"zero"')
+                for name, lag in (("8", 8), ("32", 32))}
+        guess = settings.Way('{"preconditioner": "jacobi"}', 1e-2, '{"copingnet": {"lag_steps": 32, "model": "x.h5"}}')
+        for step_s, of in ((0.08, "8"), (0.04, "8 32 guess cholesky"), (0.005, "8 32 guess cholesky")):
+            ways = {**kept, "guess": guess, "cholesky": cholesky}
+            found = [name for name, way in ways.items() if scene.renews(way.setting(Step(step_s, "bdf2")))]
+            self.assertEqual(" ".join(found), of, step_s)
+        self.assertTrue(scene.renews(settings.direct(Step(0.08, "bdf2"))))
+
+    def test_a_way_of_another_kind_is_crossed_with_guesses_of_this_kind_alone(self):
+        axes = {kind: scenes.Scene("bending_rod").axes(kind) for kind in OF_CG}
+        way = settings.Way('{"preconditioner": "lagged_cholesky"}', 1e-3, '"zero"')
+        for kind in OF_CG:
+            found = axes[kind].crossed(way, axes[kind].guesses)
+            self.assertEqual(bool(found), kind != settings.JACOBI)
+            for other in found:
+                self.assertIn(kind, other.setting(Step(0.02, "bdf2")).kinds())
+                self.assertEqual((other.preconditioner, other.tolerance), (way.preconditioner, way.tolerance))
 
     def test_frames_of_all_steps_are_at_the_instants_of_the_reference(self):
         for name in scenes.names():
@@ -175,6 +197,18 @@ class Judged(unittest.TestCase):
                          {"a": "the base", "b": "equal", "c": "slower", "d": "", "e": ""})
         self.assertAlmostEqual(found["c"].factor.value, 2, delta=0.05)
         self.assertEqual(answers.judged({"d": found["d"]}), {"d": found["d"]})
+
+    def test_a_setting_of_two_kinds_is_one_test(self):
+        some = {a.kind: a for a in (self.answer("a", 1), self.answer("b", 1.03), self.answer("c", 1.5))}
+        shared = {**some, "d": replace(some["b"], kind="d"), "e": replace(some["b"], kind="e")}
+        with mock.patch.object(verdicts, "holm", side_effect=verdicts.holm) as holm:
+            verdict = {kind: answer.verdict for kind, answer in answers.judged(shared).items()}
+        self.assertEqual(len(holm.call_args.args[0]), 2)
+        self.assertEqual({verdict[kind] for kind in "bde"}, {answers.judged(some)["b"].verdict})
+
+    def test_a_guess_of_the_user_is_no_base(self):
+        found = answers.judged({a.kind: a for a in (self.answer(OWN, 1, tuning=0.1), self.answer("b", 1.5))})
+        self.assertEqual({kind: answer.verdict for kind, answer in found.items()}, {OWN: "faster", "b": "the base"})
 
     def test_the_base_is_the_cheapest_on_the_draws_for_tuning(self):
         found = answers.judged({a.kind: a for a in (self.answer("a", 1, tuning=0.4), self.answer("b", 0.5))})
@@ -350,6 +384,7 @@ class Small(unittest.TestCase):
             self.assertEqual([line.split("  ")[0] for line in lines[1:]], [kind for kind in KINDS if kind != OWN])
             self.assertIn(sum(" the base " in line for line in lines[1:]), (0, 1) if level == "0.1" else (1,))    # 0.08 %
         self.assertRegex(blocks[3], r"rods +- - -")    # models that an earlier version trained
+        self.assertRegex(blocks[4], rf"^rod: version {answers.PROTOCOL} of the rules, program \w+(-dirty)?, 20")
         self.assertIn(os.path.join(self.folder.name, "score.png"), done.stdout)
         self.own_guess()
         self.again()

@@ -18,7 +18,8 @@ from rodsweep.scoring.scenes import TEST
 from rodsweep.scoring.settings import KINDS, OWN, TRAININGS, Setting, model_of
 from rodsweep.writing import outputs
 
-PROTOCOL = 4
+PROTOCOL = 5
+READABLE = (4, 5)    # results of these may be shown; docs/score.md says what 5 changed
 BASE, EQUAL, SLOWER, FASTER, UNDECIDED = "the base", "equal", "slower", "faster", "not told apart"
 PRODUCTS_TO = 1e-3      # relative: those of timed simulations are those of the ones with errors
 
@@ -78,13 +79,14 @@ class Scored:
     levels: list
     training_minutes: dict      # {model: [training]}
     answers: list
+    protocol: int = PROTOCOL
 
     def at(self, level):
         """{kind: Answer} with factors and verdicts."""
         return judged({answer.kind: answer for answer in self.answers if answer.level == level})
 
     def write(self, path):
-        made = {"protocol": PROTOCOL, **{name: getattr(self, name) for name in self.__dataclass_fields__ if name != "answers"}}
+        made = {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "answers"}
         lines = [f" {json.dumps(name)}: {json.dumps(value)}" for name, value in made.items()]
         rows = ",\n".join(f"  {json.dumps(answer.as_json())}" for answer in self.answers)
         outputs.write(path, "{\n" + ",\n".join([*lines, f' "answers": [\n{rows}\n ]']) + "\n}\n")
@@ -104,8 +106,8 @@ class Scored:
     def read(cls, path):
         with open(path, encoding="utf-8") as file:
             found = json.load(file)
-        if found.pop("protocol") != PROTOCOL:
-            raise SweepFileError(f"{path} is of another version of the rules than {PROTOCOL} (docs/score.md)")
+        if found["protocol"] not in READABLE:
+            raise SweepFileError(f"{path} is of version {found['protocol']} of the rules, not {PROTOCOL} (docs/score.md)")
         answers = [Answer.from_json(entry) for entry in found.pop("answers")]
         return cls(**found, answers=answers)
 
@@ -128,22 +130,22 @@ def answers_of(chosen, times, runs, draws=TEST):
 
 
 def judged(answers):
-    """{kind: Answer} at one error, with verdicts."""
+    """{kind: Answer} at one error, with verdicts. A setting of two kinds is tested once."""
     kept = {kind: answer for kind, answer in answers.items() if answer.kept}
     if not kept:
         return answers
-    base = kept[min(kept, key=lambda kind: kept[kind].tuning_s)]
-    factors = {kind: verdicts.factor(answer.time_s, base.time_s) for kind, answer in kept.items()
+    base = kept[min(kept, key=lambda kind: (kind == OWN, kept[kind].tuning_s))]    # time on the user's machine
+    factors = {answer.setting: verdicts.factor(answer.time_s, base.time_s) for answer in kept.values()
                if answer.setting != base.setting}
-    sure = verdicts.holm({kind: factor.p for kind, factor in factors.items()})
+    sure = verdicts.holm({setting: factor.p for setting, factor in factors.items()})
     made = dict(answers)
     for kind, answer in kept.items():
-        factor = factors.get(kind)
+        factor = factors.get(answer.setting)
         if factor is None:
             made[kind] = replace(answer, factor=verdicts.Factor(1, 1, 1, 1), verdict=BASE)
         else:
             differs = SLOWER if factor.value > 1 else FASTER
-            verdict = EQUAL if factor.equal() else differs if sure[kind] < 1 - verdicts.LEVEL else UNDECIDED
+            verdict = EQUAL if factor.equal() else differs if sure[answer.setting] < 1 - verdicts.LEVEL else UNDECIDED
             made[kind] = replace(answer, factor=factor, verdict=verdict)
     return made
 
@@ -159,7 +161,7 @@ def training_minutes(root, settings):
 
 
 def table(scored):
-    """Lines: a block per error, then the trainings."""
+    """Lines: a block per error, then the trainings, and what made them."""
     lines = []
     for level in scored.levels:
         of = scored.at(level)
@@ -174,7 +176,7 @@ def table(scored):
         rows += [[name, " ".join(texts.short_text(float("nan") if m is None else m, 3) for m in of)]
                  for name, of in scored.training_minutes.items()]
         lines += [*texts.aligned(rows), ""]
-    return lines
+    return [*lines, f"{scored.title}: version {scored.protocol} of the rules, program {scored.revision}, {scored.date}", ""]
 
 
 def comparison(known, again):

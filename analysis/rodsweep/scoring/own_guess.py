@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rodsweep.scoring import answers, sitting
+from rodsweep.scoring import answers, sitting, verdicts
 from rodsweep.scoring.runs import Runs
 from rodsweep.scoring.scenes import TEST, TUNING
 from rodsweep.scoring.settings import CALL, CLASSICAL, OWN, ZERO, canonical
@@ -26,7 +26,7 @@ def scored(scene, known, path, inputs, samples, work, show):
                if answer.level == level and answer.kind in REPLACED]
         runs.measure(own, TUNING, samples)
         of = {setting: runs.results(setting, TUNING, samples) for setting in own}
-        kept = [setting for setting in own if np.median(of[setting].error) <= level] or own
+        kept = [setting for setting in own if verdicts.admitted(of[setting].error[None], level)] or own
         if kept:
             best = min(kept, key=lambda setting: np.median(of[setting].time_s))
             chosen[level, OWN] = best, float(np.median(of[best].time_s))

@@ -3,12 +3,12 @@ begins with that of analysis/results/score, if there is one.
 
 The error of a simulation is the root mean square distance of its segments from the reference, over the diagonal of the
 box around all segments at the start, at the worst instant; infinite if it failed, or was stopped because it took too
-long. Errors have the same bits on any machine. Times here are processor time of the steps on a machine that may do other
-things: they only say which settings are worth a sitting.
+long. Errors have the same bits on any machine with the same vector instructions. Times here are processor time of the
+steps on a machine that may do other things: they only say which settings are worth a sitting.
 
 A line before those of each program and machine has the checksum of the scene's job. Lines of another job are refused. With
-another program or machine some settings are simulated again: their errors must be the same, and the quotient of their
-times, "scale", holds for all earlier lines. Lines of models that have changed are left out.
+another program or machine some direct solves are simulated again: their errors must be the same, and the quotient of
+their times, "scale", holds for all earlier lines. Lines of models that have changed are left out.
 """
 
 import hashlib
@@ -27,7 +27,7 @@ from rodsweep.reading import accuracy, job_paths, measures
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.scoring.scenes import TUNING
-from rodsweep.scoring.settings import OWN, Setting
+from rodsweep.scoring.settings import DIRECT, OWN, Setting
 from rodsweep.writing import outputs
 
 AT_ONCE = 250       # settings in a job
@@ -132,7 +132,8 @@ class Runs:
 
     def _begin(self):
         """Writes a line before those of this program and machine."""
-        scale, known = 1, [(setting, draws, samples) for setting, draws, samples in self.known if draws == TUNING]
+        scale, known = 1, [(setting, draws, samples) for setting, draws, samples in self.known
+                           if draws == TUNING and DIRECT in setting.kinds()]    # CG's depend on the order of sums
         if known:
             again = known[::max(1, len(known) // COMPARED)][:COMPARED]
             before = [self.known[key] for key in again]

@@ -22,6 +22,7 @@ LEVELS = (1e-1, 1e-2, 1e-3, 1e-4)
 TUNING, TEST, AGAIN = DRAWS = ("tuning", "test", "again")
 ENDING = "_draws.json"
 SEEDS_APART = 10000
+FEWER_RENEWALS = 0.1
 CHAINS = {"rods": (5, 30), "rods-large": (3,)}
 LATTICES = {"lattices": (5, 20)}
 SMALLER = {"large_forest": "forest", "large_lattice": "lattice", "large_net": "net"}
@@ -68,6 +69,11 @@ class Scene:
             between = self.instant_s / step.step_s
             return step.step_s > self.steps_s[-1] and abs(between - round(between)) < 1e-9
         return tuple([step for step in some if fits(step)] for some in settings.steps(self.has_contact))
+
+    def renews(self, setting):
+        """Whether the timed steps, all but the first, renew what a setting keeps about as often as it would in the long run."""
+        timed = round(self.job["time"]["duration_s"] / setting.step.step_s) - 1
+        return all(timed // lag * lag >= (1 - FEWER_RENEWALS) * timed for lag in setting.lags())
 
     def reference_job(self, draws):
         made = copy.deepcopy(self.job)

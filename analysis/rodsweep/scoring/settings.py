@@ -15,6 +15,7 @@ NEWTON = (1, 2, 3, 6)
 CONTACT = (1e-2, 1e-3, 1e-4, 1e-5)
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 LAGS = (0, 4, 8, 32)
+LAG_OF_CHOLESKY = 10            # of lagged_cholesky, if a job gives no other
 SWEEPS = (1, 3, 10, 30, 100)    # of Gauss-Seidel
 STOPS = (1, 0.1)                # stop_at, over the tolerance of the solve
 TRAININGS = (1, 2, 3)
@@ -72,6 +73,12 @@ class Setting:
     def models(self):
         """Their paths."""
         return job_paths.given([json.loads(self.solve), json.loads(self.guess)], ("model",))
+
+    def lags(self):
+        """The numbers of steps for which it keeps a preconditioner or a network's factors."""
+        solve = json.loads(self.solve)
+        own = solve.get("lag_steps", LAG_OF_CHOLESKY if solve.get("preconditioner") == "lagged_cholesky" else 0)
+        return {own, *map(int, re.findall(r'"lag_steps": (\d+)', self.guess))} - {0}
 
     def preconditioner(self):
         """With its lag and model, as JSON."""
@@ -216,10 +223,15 @@ class Axes:
         return [other for other in dict.fromkeys(found) if other != way and self.has(other)]
 
     def screened(self):
-        """Every preconditioner with every tolerance, for the first guess."""
-        way = self.first()
-        return [other for value in self.preconditioners for tolerance in TOLERANCES
-                if self.has(other := replace(way, preconditioner=value, tolerance=tolerance))]
+        """Every preconditioner with every tolerance, for the first guess, and for the first that keeps a network's factors
+        and stops at a residual."""
+        lagged = next((guess for guess in self.guesses if "lag_steps" in guess and "stop_at" in guess), self.guesses[0])
+        return [way for guess in dict.fromkeys([self.guesses[0], lagged]) for value in self.preconditioners
+                for tolerance in TOLERANCES if self.has(way := Way(value, tolerance, guess))]
+
+    def crossed(self, way, guesses):
+        """A way of any kind or error with these guesses, where that is of this kind."""
+        return [other for guess in guesses if self.has(other := replace(way, guess=guess))]
 
 
 def _lagged():
