@@ -26,7 +26,6 @@ EXAMPLES = """examples:
   analysis/ablation.py results/ablation_helix.h5 results/ablation_helix --tolerance 1e-1,1e-2 --base base"""
 MOST = 1.4    # upper limit of the ratio axis
 LABEL_MM = 0.62    # height of a rotated tick label per character
-TOLERANCE_COLOURS = ["#0072B2", "#D55E00", "#00805c", "#7b3fb5"]
 
 
 def _key(*path, default):
@@ -188,8 +187,9 @@ def table(shown, models, base, panels, ratios, means, tolerances):
 
 def figure(shown, models, base, panels, ratio, tolerances):
     file = shown.file
+    colours = [look.colour for look in style.series_styles(len(tolerances))]
     handles = [Line2D([], [], color=colour, marker="o", label=f"to {texts.tolerance_label(file.tolerances[t])}")
-               for colour, t in zip(TOLERANCE_COLOURS, tolerances)]
+               for colour, t in zip(colours, tolerances)]
     handles.append(Line2D([], [], color="#777777", linewidth=0.8, linestyle=(0, (4, 2)), label="the base"))
     notes = [f"CG ratio: {measures.NEWTON[shown.newton]}; mean over simulations, {study.sample_text([ratio])}. Open "
              f"markers: the base ({described(models[base])}). All networks took the same number of optimiser steps.",
@@ -201,7 +201,7 @@ def figure(shown, models, base, panels, ratio, tolerances):
     for k, (axes, (what, values)) in enumerate(zip(page.axes[0], panels.items())):
         at = np.arange(len(values), dtype=float)
         guesses = [g for _, g in values]
-        for colour, t in zip(TOLERANCE_COLOURS, tolerances):
+        for colour, t in zip(colours, tolerances):
             axes.axhline(ratio[base, t].value, color=colour, linewidth=0.6, linestyle=(0, (4, 2)), alpha=0.7)
             joined = {} if what in ORDERED else {"linestyle": ""}
             style.errorbar(axes, at, [ratio[g, t] for g in guesses], color=colour, marker="o", markersize=3, zorder=2,

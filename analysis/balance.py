@@ -23,8 +23,6 @@ EXAMPLES = """examples:
   analysis/balance.py results/balance.h5
   analysis/balance.py results/balance.h5 --scene helix
   analysis/balance.py results/default_steps.h5 --motion"""
-KINDS = {("euler", 0): "step of Shao et al.", ("euler", 1): "Euler in balance", ("bdf2", 0): "BDF2",
-         ("bdf2", 1): "BDF2 in balance"}    # by time.integrator and time.balance; the last is the best reference
 FEATURES = (("scene.tip_force_n", "with an end load"), ("scene.tip_torque_nm", "with an end torque"),
             ("scene.tip_motion", "with a moved end"), ("scene.section", "of another section"),
             ("scene.motions", "with moved ends"), ("scene.wind", "in wind"), ("scene.obstacles", "dropped"))
@@ -52,8 +50,8 @@ def main():
         if not file.has("/steps/momentum_residual"):
             raise KeyNotFound(f"{file.path} has no momentum residuals (/steps/momentum_residual)")
         tasks = np.unique(shown.sims.any_task)
-        kinds = _kinds(file)
-        found = [kind for kind in KINDS if kind in {kinds[task] for task in tasks}]
+        kinds = accuracy.kinds(file)
+        found = [kind for kind in accuracy.KINDS if kind in {kinds[task] for task in tasks}]
         if len(found) < 2:
             raise KeyNotFound(f"{file.path} has only one kind of step in the chosen simulations: sweep time.balance "
                               "or time.integrator")
@@ -62,15 +60,6 @@ def main():
         if any(len(line.step_s) < 2 for lines in panels.values() for line in lines.values()):
             return  # one time step gives no line to draw
         study.save(file, options, {"balance": figure(shown, panels)})
-
-
-def _kinds(file):
-    """The kind of step of every task, a key of KINDS."""
-    def values(key, default):
-        return file.parameters[key].values if key in file.parameters else [default] * file.task_count
-
-    return [(str(integrator), int(balance)) for integrator, balance in
-            zip(values("time.integrator", "euler"), values("time.balance", 0))]
 
 
 def _scenes(file, tasks):
@@ -105,7 +94,7 @@ def _lines(file, tasks, kinds, found, motion):
     """{kind: Line}"""
     step_s = file.parameters["time.step_s"].values
     finest = step_s[tasks].min()
-    best = max((kinds[task] for task in tasks if step_s[task] == finest), key=list(KINDS).index)
+    best = max((kinds[task] for task in tasks if step_s[task] == finest), key=list(accuracy.KINDS).index)
     exact = {int(file.sample[task]): accuracy.frames(file, task)
              for task in tasks if kinds[task] == best and step_s[task] == finest}
     return {kind: _line(file, [task for task in tasks if kinds[task] == kind and int(file.sample[task]) in exact],
@@ -122,15 +111,11 @@ def _line(file, tasks, exact, reference_s, motion):
         line.second_ms.append(intervals.median([1e3 * accuracy.step_s(file, task) / size for task in of], draws))
         apart = [accuracy.distances(accuracy.frames(file, task), exact[int(file.sample[task])]) for task in of]
         line.error.append(None if size == reference_s else intervals.median(
-            [_error(frames if motion else frames[-1:]) for frames in apart], draws))
+            [accuracy.root_mean_square(frames if motion else frames[-1:]) for frames in apart], draws))
         line.iterations.append(intervals.mean([file.rows("/steps/newton_iterations", task).mean() for task in of], draws))
         line.lacking.append(intervals.median(
             [np.nanmedian(file.rows("/steps/momentum_residual", task)[1:]) for task in of], draws))
     return line
-
-
-def _error(distances):
-    return np.sqrt(np.square(distances).mean()) if len(distances) else np.nan
 
 
 def table(panels):
@@ -140,7 +125,7 @@ def table(panels):
         for size, kind in ((size, kind) for size in sizes for kind in lines if size in lines[kind].step_s):
             line, k = lines[kind], lines[kind].step_s.index(size)
             error = texts.short_text(float(line.error[k].value), 2) if line.error[k] else "reference"
-            rows.append([title, f"{size:g}", KINDS[kind], error,
+            rows.append([title, f"{size:g}", accuracy.KINDS[kind], error,
                          *(texts.short_text(float(values[k].value), 2)
                            for values in (line.second_ms, line.iterations, line.lacking))])
     for k in range(len(rows) - 1, 1, -1):    # what the row above says already
@@ -156,9 +141,9 @@ def figure(shown, panels):
     points = [error for lines in panels.values() for line in lines.values() for error in line.error if error]
     notes = [f"Medians of {study.sample_text(points, mark='')}. Along a line the time step halves from point to point, "
              f"from {max(next(iter(panels.values()))[kinds[-1]].step_s):g} s on the left to twice the reference's. "
-             f"Reference: {KINDS[kinds[-1]]}, smallest step.", shown.about()]
+             f"Reference: {accuracy.KINDS[kinds[-1]]}, smallest step.", shown.about()]
     page = layout.Page(shown.width_mm, ["Error"], len(panels), 3 if shown.wide else 1, 44,
-                       [look.handle(KINDS[kind]) for kind, look in looks.items()], notes, shown.timing_warning(),
+                       [look.handle(accuracy.KINDS[kind]) for kind, look in looks.items()], notes, shown.timing_warning(),
                        left_mm=13, gap_mm=9)
     for column, (axes, (title, lines)) in enumerate(zip(page.axes[0], panels.items())):
         for kind, line in lines.items():
@@ -169,8 +154,7 @@ def figure(shown, panels):
         for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
             layout.set_ticks(axis, layout.log_ticks(*limits))
         page.title(axes, title)
-        if column == 0:
-            axes.set_ylabel("error / size of the scene", labelpad=2)
+        page.label_y(axes, column, "error / size of the scene", shared=False)
     page.label_x(0, "wall time per simulated second (ms)")
     return page
 

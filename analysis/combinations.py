@@ -48,7 +48,7 @@ def main():
         x = options.x or usual_x(file, shown.sims)
         shown.sims = shown.sims.subset(groups.applicable(file, shown.sims, x))
         panels = combinations.panels(file, shown.sims, x)
-        found = [combinations.cells(file, shown.sims, panel, x, options.newton) for panel in panels]
+        found = [combinations.cells(file, shown.sims, panel, x, options.newton, shown.guesses) for panel in panels]
         if not any(cell.cheapest(kind) for cells in found for cell in cells for kind in combinations.KINDS):
             raise KeyNotFound(f"{file.path} has no combination that was timed: {shown.census.text()}")
         chosen = commandline.chosen_tolerances(file, options) if options.tolerance else \

@@ -63,10 +63,10 @@ def main():
                               "no task is in both files, so nothing was compared" +
                               hint * (options.by == "everything"))
     if found.damaged:
-        print(f"compare.py: results of {options.file} or {options.other} are damaged: values and checksum of "
-              f"task{'s' * (len(found.damaged) > 1)} {listed([str(task) for task in found.damaged])} contradict each other; "
-              "`rodsweep info FILE --verify` tells in which file", file=sys.stderr)
-    sys.exit(DAMAGED if found.damaged else DIFFER if found.differing else 0)
+        commandline.stop(f"results of {options.file} or {options.other} are damaged: values and checksum of "
+                         f"task{'s' * (len(found.damaged) > 1)} {listed([str(task) for task in found.damaged])} contradict "
+                         "each other; `rodsweep info FILE --verify` tells in which file", DAMAGED)
+    sys.exit(DIFFER if found.differing else 0)
 
 
 def text(found, pairs, keys, options):

@@ -28,7 +28,7 @@ EXAMPLES = """examples:
   analysis/export.py results/demo.h5 -o demo.csv
   analysis/export.py results/demo.h5 --level solves --where newton=0 --where guess=quadratic -o demo-solves.csv.gz
   analysis/export.py results/demo.h5 --level solves --tolerance 1e-2 -o demo-solves.parquet
-  analysis/export.py results/long_term.h5 --level steps --columns task,sample,time_s,length_drift --where 'time_s>=100'
+  analysis/export.py results/long_term_learned.h5 --level steps --columns task,sample,time_s,length_drift --where 'time_s>=100'
   analysis/export.py results/demo.h5 --level steps --list"""
 
 ON_TERMINAL = 20    # rows
@@ -53,8 +53,9 @@ def main():
     options = arguments()
     with SweepFile(options.file) as file:
         tidy.require_rows(file, options.level)
-        chosen = commandline.chosen_tasks(file, options) & file.complete
-        table = tidy.Tidy(file, options.level, np.flatnonzero(chosen), commandline.chosen_guesses(file, options),
+        guesses = commandline.chosen_guesses(file, options)
+        chosen = commandline.chosen_tasks(file, options) & file.complete & commandline.advanced_by(file, guesses)
+        table = tidy.Tidy(file, options.level, np.flatnonzero(chosen), guesses,
                           commandline.chosen_tolerances(file, options))
         if options.list:
             print("\n".join(table.names))

@@ -95,8 +95,7 @@ def figure(shown, panels, found, tolerances):
                 axes.plot(along, (fastest - along) / zero, color="#999999", linewidth=0.8, linestyle=(0, (3, 2)), zorder=1)
             layout.set_ticks(axes.xaxis, layout.log_ticks(*axes.get_xlim()))
             axes.set_title(f"to {texts.tolerance_label(file.tolerances[t])}")
-            if k == 0:
-                axes.set_ylabel("CG ratio", labelpad=2)
+            page.label_y(axes, k, "CG ratio", shared=False)
         page.label_x(row, "guess (µs per segment and solve)")
     return page
 

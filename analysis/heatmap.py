@@ -26,10 +26,10 @@ from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
-  analysis/heatmap.py results/step_size.h5 --x time.step_s --y tolerance
+  analysis/heatmap.py results/generalisation_step.h5 --x time.step_s --y tolerance
   analysis/heatmap.py results/stiffness.h5 --x scene.youngs_modulus_pa --y scene.segments --measure speedup-step
   analysis/heatmap.py results/stiffness.h5 --x scene.segments --y tolerance --guess quadratic
-  analysis/heatmap.py results/step_size.h5 --x time.step_s --y solve.preconditioner --measure iterations"""
+  analysis/heatmap.py results/spatial_bending.h5 --x scene.segments --y solve.preconditioner --measure iterations"""
 MOST_PANELS = 12
 
 
@@ -118,8 +118,7 @@ def figure(shown, options, planes, guesses, tolerances):
             title = file.guesses[guesses[k % len(guesses)]] + (f" · {title}" if len(planes) > len(guesses) else "")
         page.title(axes, title, weight="bold")
         axes.set_xlabel(axis_label(file, options.x, plane.x), labelpad=1.5)
-        if k % columns == 0:
-            axes.set_ylabel(axis_label(file, options.y, plane.y), labelpad=2)
+        page.label_y(axes, k, axis_label(file, options.y, plane.y), shared=False)
     page.colour_bar(ScalarMappable(norm, colormap), measure.label if shown.wide else "")
     return page
 

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Error of the motion over the time step, and the energy that a step takes, for every integrator, as figure and table.
 
-The reference of a simulation is the run with the smallest step, of bdf2 if it was tried. An error is the root mean
-square distance of the segments from it, over the frames that all runs have, relative to the diagonal of the box around
-the rod at the start (for a straight rod, its length). A point is the median over simulations, with a 95 % bootstrap
-interval. The lower row shows the total energy of one simulation at one step over time. Each value of a parameter has a
-column. The file needs trajectories (record.trajectory_every) and a grid of time.step_s.
+The reference of a simulation is the run with the smallest step, of bdf2 and in balance if these were tried. An error is
+the root mean square distance of the segments from it, over the frames that all runs have, relative to the diagonal of
+the box around the rod at the start (for a straight rod, its length). A point is the median over simulations, with a
+95 % bootstrap interval. The lower row shows the total energy of one simulation at one step over time. Each value of a
+parameter has a column. The file needs trajectories (record.trajectory_every) and a grid of time.step_s.
 """
 
 import numpy as np
@@ -47,19 +47,21 @@ def main():
 
 def lines(file, tasks):
     """{integrator: [(step, Estimate of the error, tasks)]}, largest step first."""
-    step = file.parameter("time.step_s").values
+    step, kinds, best_last = file.parameter("time.step_s").values, accuracy.kinds(file), list(accuracy.KINDS)
+    names = [integrator + " in balance" * balance for integrator, balance in kinds]
     keys = [p.codes()[tasks] for p in file.parameters.values() if p.name not in VARIED]
     rod = np.unique(np.column_stack([file.sample[tasks], *keys]), axis=0, return_inverse=True)[1].ravel()
     apart = np.full(len(tasks), np.nan)
     for group in range(rod.max() + 1):
         rows = np.flatnonzero(rod == group)
-        best = min(rows, key=lambda row: (step[tasks[row]], name(file, tasks[row]) != "bdf2"))
+        best = min(rows, key=lambda row: (step[tasks[row]], -best_last.index(kinds[tasks[row]])))
         exact = accuracy.frames(file, tasks[best])
         for row in rows:
-            apart[row] = np.nan if row == best else error(accuracy.frames(file, tasks[row]), exact)
+            distances = accuracy.distances(accuracy.frames(file, tasks[row]), exact)
+            apart[row] = np.nan if row == best else accuracy.root_mean_square(distances)
     found = {}
-    for which, size in sorted({(name(file, task), step[task]) for task in tasks}, key=lambda key: (key[0], -key[1])):
-        rows = [row for row, task in enumerate(tasks) if (name(file, task), step[task]) == (which, size)
+    for which, size in sorted({(names[task], step[task]) for task in tasks}, key=lambda key: (key[0], -key[1])):
+        rows = [row for row, task in enumerate(tasks) if (names[task], step[task]) == (which, size)
                 and np.isfinite(apart[row])]
         if rows:
             found.setdefault(which, []).append((size, intervals.median(apart[rows], file.sample[tasks[rows]]),
@@ -67,19 +69,6 @@ def lines(file, tasks):
     if not found:
         raise KeyNotFound(f"{file.path} has no simulation with several steps: give time.step_s a grid in the job")
     return found
-
-
-def name(file, task):
-    """The integrator of a task, and whether its steps balance momentum."""
-    def value(key, default):
-        return file.parameters[key].values[task] if key in file.parameters else default
-
-    return str(value("time.integrator", "euler")) + (" in balance" if value("time.balance", 0) == 1 else "")
-
-
-def error(path, exact):
-    found = accuracy.distances(path, exact)
-    return np.sqrt(np.square(found).mean()) if len(found) else np.nan
 
 
 def table(errors):
@@ -112,7 +101,10 @@ def energies(file, task):
 def figure(shown, errors, energy_step):
     names = list(dict.fromkeys(which for of in errors.values() for which in of))
     looks = dict(zip(names, style.series_styles(len(names))))
-    size = energy_step or max(line[0][0] for of in errors.values() for line in of.values())
+    steps = sorted({entry[0] for of in errors.values() for line in of.values() for entry in line})
+    size = steps[-1] if energy_step is None else energy_step
+    if not np.isclose(size, steps).any():
+        raise KeyNotFound(f"--energy-step {size:g}: the steps are {', '.join(f'{one:g}' for one in steps)}")
     notes = ["Errors: root mean square over all segments and frames, relative to the size of the rod; medians with 95 % "
              f"intervals. Energy: change since the first step ÷ largest kinetic energy, at a step of {size:g} s.",
              shown.about()]
@@ -129,7 +121,6 @@ def figure(shown, errors, energy_step):
             if here:
                 lower.plot(*energies(shown.file, here[0]), color=looks[which].colour, linewidth=0.8)
         upper.set(xscale="log", yscale="log" if logarithmic else "linear")
-        steps = sorted({entry[0] for line in of.values() for entry in line})
         layout.set_ticks(upper.xaxis, steps[::-2][::-1])
         for axes in (upper, lower):
             page.title(axes, title)

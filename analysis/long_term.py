@@ -19,9 +19,9 @@ from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
-  analysis/long_term.py results/long_term.h5
-  analysis/long_term.py results/long_term.h5 --guess zero,previous,quadratic --log-time
-  analysis/long_term.py results/long_term.h5 --after 2000 --csv > drift.csv"""
+  analysis/long_term.py results/long_term_learned.h5
+  analysis/long_term.py results/long_term_learned.h5 --guess zero,previous,quadratic --log-time
+  analysis/long_term.py results/long_term_learned.h5 --after 2000 --csv > drift.csv"""
 PANELS = {  # quantity: title, vertical scale
     "length_drift": ("size of the length drift", "log"),
     "joint_gap": ("largest joint gap / joint length", "log"),
@@ -207,17 +207,9 @@ def _scale_y(axes, scale, values, well):
         axes.set_yscale("symlog", linthresh=linear, linscale=0.6)
         axes.axhline(0, color="#888888", linewidth=0.5, zorder=1)
         axes.set_ylim(1.4 * low if low < 0 else -0.1 * linear, 1.4 * high if high > 0 else 0.1 * linear)
-        ticks = _symlog_ticks(linear, low, high)
-        axes.set_yticks(ticks, [texts.number_text(t) for t in ticks])
+        axes.yaxis.get_major_locator().set_params(numticks=6)
+        axes.yaxis.set_major_formatter(lambda value, _: texts.number_text(value))
         axes.yaxis.set_minor_locator(layout.NullLocator())
-
-
-def _symlog_ticks(linear, low, high):
-    """Zero and powers of ten from the end of the linear part."""
-    def decades(reach):
-        count = int(np.floor(np.log10(reach / linear) + 1e-9)) if reach >= linear else -1
-        return [linear * 10.0 ** k for k in range(0, count + 1, max(1, -(-count // 3)))]
-    return [-t for t in decades(-low)[::-1]] + [0] + decades(high)
 
 
 if __name__ == "__main__":

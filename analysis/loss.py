@@ -36,7 +36,7 @@ def main():
     trainings = [modelfile.read(path) for path in options.files]
     print("\n".join(table(trainings)) + "\n")
     name = f"and-{len(trainings) - 1}-more-loss" if len(trainings) > 1 else "loss"
-    study.save(trainings[0], options, {name: figure(trainings, style.WIDTHS_MM[options.width])})
+    study.save(trainings[0], options, {name: figure(trainings, options.width)})
 
 
 def labels(trainings):

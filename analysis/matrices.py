@@ -31,7 +31,6 @@ def arguments():
 def main():
     options = arguments()
     ending, write = matrices.FORMATS[options.format]
-    os.makedirs(options.output, exist_ok=True)
     with Systems(options.file) as systems:
         for system in systems:
             stem = os.path.join(options.output, f"step-{system.step}_newton-{system.newton}_rod-{system.rod}")

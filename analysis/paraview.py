@@ -56,15 +56,14 @@ def document(shown, reference, touched=()):
     topology(domain, trajectory.joints(shown), len(shown.length))
     series = ElementTree.SubElement(domain, "Grid", Name=f"task {shown.task}", GridType="Collection",
                                     CollectionType="Temporal")
-    rows = Rows(shown.h5, reference, len(shown.length))
     for frame, (row, time) in enumerate(zip(shown.first_row, shown.time_s)):
         grid = ElementTree.SubElement(series, "Grid", Name=f"frame {frame}", GridType="Uniform")
         ElementTree.SubElement(grid, "Time", Value=repr(float(time)))
         ElementTree.SubElement(grid, "Topology", Reference=TOPOLOGY)
-        rows.add(ElementTree.SubElement(grid, "Geometry", GeometryType="XYZ"), "/trajectories/position_m", row)
-        rows.add(attribute(grid, "orientation", "Matrix"), "/trajectories/orientation", row)
+        rows(ElementTree.SubElement(grid, "Geometry", GeometryType="XYZ"), shown, reference, "/trajectories/position_m", row)
+        rows(attribute(grid, "orientation", "Matrix"), shown, reference, "/trajectories/orientation", row)
         for name, column in CONSTANT.items():
-            rows.add(attribute(grid, name, "Scalar"), f"{trajectory.SEGMENTS}/{column}", shown.first_segment)
+            rows(attribute(grid, name, "Scalar"), shown, reference, f"{trajectory.SEGMENTS}/{column}", shown.first_segment)
         if shown.has_forces():
             for name, values in shown.internal_forces(frame).items():    # not every XDMF reader reads NaN
                 numbers(attribute(grid, name, "Scalar"), np.nan_to_num(values), NumberType="Float", Precision="8")
@@ -119,24 +118,19 @@ def attribute(grid, name, kind):
     return ElementTree.SubElement(grid, "Attribute", Name=name, AttributeType=kind, Center="Node")
 
 
-class Rows:
-    """References to rows of datasets."""
-
-    def __init__(self, h5, reference, count):
-        self.h5, self.reference, self.count = h5, reference, count
-
-    def add(self, parent, path, first):
-        """Rows [first, first + count) of a dataset as a hyperslab: start, stride and count along every axis."""
-        dataset = self.h5[path]
-        shape, width = dataset.shape, dataset.shape[1:]
-        extent = text(self.count, *width)
-        slab = ElementTree.SubElement(parent, "DataItem", ItemType="HyperSlab", Type="HyperSlab", Dimensions=extent)
-        start, stride = text(int(first), *[0] * len(width)), text(*[1] * len(shape))
-        ElementTree.SubElement(slab, "DataItem", Format="XML", NumberType="Int",
-                               Dimensions=text(3, len(shape))).text = f"{start} {stride} {extent}"
-        whole = ElementTree.SubElement(slab, "DataItem", Format="HDF", NumberType=NUMBERS[dataset.dtype.str[1:]],
-                                       Precision=str(dataset.dtype.itemsize), Dimensions=text(*shape))
-        whole.text = f"{self.reference}:{path}"
+def rows(parent, shown, reference, path, first):
+    """Adds a reference to rows of a dataset, from the first on one for every segment, as a hyperslab: start, stride and
+    count along every axis."""
+    dataset = shown.h5[path]
+    shape, width = dataset.shape, dataset.shape[1:]
+    extent = text(len(shown.length), *width)
+    slab = ElementTree.SubElement(parent, "DataItem", ItemType="HyperSlab", Type="HyperSlab", Dimensions=extent)
+    start, stride = text(int(first), *[0] * len(width)), text(*[1] * len(shape))
+    ElementTree.SubElement(slab, "DataItem", Format="XML", NumberType="Int",
+                           Dimensions=text(3, len(shape))).text = f"{start} {stride} {extent}"
+    whole = ElementTree.SubElement(slab, "DataItem", Format="HDF", NumberType=NUMBERS[dataset.dtype.str[1:]],
+                                   Precision=str(dataset.dtype.itemsize), Dimensions=text(*shape))
+    whole.text = f"{reference}:{path}"
 
 
 def text(*values):

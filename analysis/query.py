@@ -15,7 +15,7 @@ import sys
 
 import numpy as np
 
-from rodsweep.reading import commandline
+from rodsweep.reading import commandline, texts
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.reading.task_columns import TaskColumns
 
@@ -95,8 +95,7 @@ def columns_text(table):
             name = f"{column.name.removesuffix(column.guess)}GUESS" if column.guess else column.name
             lines.append((name + "[@TOLERANCE]" * column.by_tolerance,
                           column.meaning + (f" [{column.unit}]" if column.unit else "")))
-    width = max(len(name) for name, _ in lines)
-    text = "\n".join(f"{name:{width}}  {meaning}".rstrip() for name, meaning in lines)
+    text = "\n".join(texts.aligned(lines, [False, False]))
     if guesses:
         tolerances = table.tolerances()
         text += (f"\n\nGUESS      {', '.join(guesses)}\nTOLERANCE  {', '.join(tolerances)}; "
@@ -127,13 +126,10 @@ def write(names, rows, columns, options):
     elif options.csv:
         out = csv.writer(sys.stdout, lineterminator="\n")
         out.writerow(names)
-        out.writerows(["" if value is None else value for value in row] for row in rows)
+        out.writerows(rows)    # None: an empty field
     else:
         text = [names, *([table_cell(value) for value in row] for row in rows)]
-        widths = [max(map(len, column)) for column in zip(*text)]
-        for row in text:
-            print("  ".join(cell.rjust(w) if c.numeric else cell.ljust(w)
-                            for cell, w, c in zip(row, widths, columns)).rstrip())
+        print("\n".join(texts.aligned(text, [column.numeric for column in columns])))
 
 
 def table_cell(value):

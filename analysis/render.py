@@ -81,8 +81,6 @@ def main():
         for path in paths:
             outputs.check(path, options)
         draw = Drawing(shown, file, frames, options)
-        for path in paths:
-            os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
         if options.movie:
             write_movie(draw, frames, paths[0], options)
         else:

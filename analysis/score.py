@@ -23,6 +23,7 @@ import numpy as np
 
 from rodsweep.drawing import layout, study, style
 from rodsweep.reading import commandline
+from rodsweep.reading.errors import UserError
 from rodsweep.reading.job_paths import checksum
 from rodsweep.scoring import answers, own_guess, scenes, sitting
 from rodsweep.scoring.answers import Scored
@@ -42,8 +43,7 @@ MOST = 10    # of the figure's axis
 def arguments():
     made = commandline.plain_parser(__doc__, EXAMPLES)
     made.add_argument("scenes", nargs="*", metavar="NAME",
-                      help=f"scenes of jobs/score (default: all), such as {', '.join(scenes.names()[:3])}; a guess in Python "
-                           "goes before them")
+                      help="scenes of jobs/score (default: all), such as helix; a guess in Python goes before them")
     made.add_argument("--root", default=scenes.ROOT, metavar="FOLDER",
                       help="with jobs/score and network/pretrained of your own (default: those of rodsweep)")
     what = made.add_mutually_exclusive_group()
@@ -56,7 +56,7 @@ def arguments():
     made.add_argument("--samples", type=commandline.whole_number, default=10, metavar="N",
                       help="draws for a guess of yours (default: 10)")
     made.add_argument("--work", default=WORK, metavar="FOLDER", help=f"where --errors keeps what it found (default: {WORK})")
-    study.add_figure_arguments(made)
+    study.add_figure_arguments(made, "no figure")
     return made.parse_args()
 
 
@@ -72,6 +72,8 @@ def main():
     if options.errors or options.times:
         os.makedirs(os.path.dirname(chosen[0].measured("")), exist_ok=True)    # fails now rather than after hours
     if guess:
+        if options.errors or options.times or options.again:
+            raise UserError("a guess in Python goes with none of --errors, --times and --again")
         for scene in chosen:
             scored = own_guess.scored(scene, Scored.of(scene), guess, options.inputs, options.samples, options.work, say)
             print("\n".join(answers.table(scored)), flush=True)
@@ -134,7 +136,7 @@ def time_again(scene, known, work, workers):
 def show(scored, options):
     print("\n".join(line for one in scored for line in answers.table(one)))
     if options.output and scored:
-        page = figure(scored, int(options.width))
+        page = figure(scored, options.width)
         print("\n".join(page.save(options.output, "score", options.format, not options.no_caption)))
 
 
@@ -144,8 +146,8 @@ def figure(scored, width_mm):
     note = ["Processor time over that of the fastest kind, at errors of the motion over the size of the scene: geometric means "
             f"over draws that did not choose the settings. Only kinds that keep to the error there. More than {MOST} is "
             "drawn at the upper edge."]
-    page = layout.Page(width_mm, ["Cheapest settings"], len(scored), 4, 44, [look.handle(name) for name, look in looks.items()],
-                       note, left_mm=12, gap_mm=9)
+    page = layout.Page(width_mm, ["Cheapest settings"], len(scored), 4 if width_mm > 100 else 2, 44,
+                       [look.handle(name) for name, look in looks.items()], note, left_mm=12, gap_mm=9)
     for column, (axes, one) in enumerate(zip(page.axes[0], scored)):
         kept = [{kind: answer.time for kind, answer in one.at(level).items() if answer.kept} for level in one.levels]
         for shift, (kind, look) in enumerate(looks.items()):

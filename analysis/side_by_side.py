@@ -39,7 +39,7 @@ def main():
     with SweepFile(options.file) as file:
         trajectory.recorded(file)
         shown = study.of_tasks(file, options, failed_too=True)
-        tasks = np.unique(shown.sims.task[shown.sims.task >= 0])
+        tasks = shown.sims.tasks()
         first = trajectory.of_task(file, int(tasks[0]))
         start = first.centres(0)
         found = {}
@@ -109,8 +109,7 @@ def figure(shown, found, apart, options):
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.set_title(f"{moment:g} s")
         axes.set_xlabel("across (m)", labelpad=2)
-        if k % page.columns == 0:
-            axes.set_ylabel("height (m)", labelpad=2)
+        page.label_y(axes, k, "height (m)", shared=False)
     for name, one in found.items():
         if np.any(apart[name] > 0):
             time = one.time_s[:len(apart[name])]

@@ -28,14 +28,10 @@ class Study(NamedTuple):
     steps: list    # commands for bash, in the root of the repository, with build/ in the PATH
 
 
-def run_file(job, output):
-    return f"rodsweep run {job} -n $(nproc) -o {output} --resume"
-
-
 def run(*names):
     """Jobs of jobs/, in any folder."""
     paths = (next((ROOT / "jobs").rglob(f"{name}.json")) for name in names)
-    return [run_file(path.relative_to(ROOT), f"results/{path.stem}.h5") for path in paths]
+    return [f"rodsweep run {path.relative_to(ROOT)} -n $(nproc) -o results/{path.stem}.h5 --resume" for path in paths]
 
 
 def results(names):
@@ -248,6 +244,13 @@ def wanted(name):
     return ALL[name].steps
 
 
+def reads_results(steps):
+    """Whether steps read results/ otherwise than by their words: in a job, or in a script with a folder of its own."""
+    jobs = [ROOT / step.split()[2] for step in steps if step.startswith("rodsweep run ")]
+    return any("/results/" in job.read_text(encoding="utf-8") for job in jobs) or any(
+        script in step for script in ("variants.py", "score.py") for step in steps)
+
+
 def main():
     made = argparse.ArgumentParser(description=__doc__, epilog=overview(),
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -256,6 +259,8 @@ def main():
     made.add_argument("--results", default="results", metavar="FOLDER", help="where results go (default: results)")
     made.add_argument("--dry-run", action="store_true", help="print the commands only")
     options = made.parse_args()
+    if options.results != "results" and (fixed := [name for name in options.studies if reads_results(wanted(name))]):
+        sys.exit(f"studies.py: {', '.join(fixed)} needs results/ of this folder: leave out --results")
     folder = shlex.quote(os.path.abspath(options.results)) if options.results != "results" else "results"
     steps = [re.sub(r"(?<![\w/])results/", lambda _: f"{folder}/", step) for name in options.studies for step in wanted(name)]
     if options.dry_run or not steps:
@@ -275,4 +280,5 @@ def main():
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)    # the list's reader may close the pipe
     main()

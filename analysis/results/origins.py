@@ -18,11 +18,12 @@ import os
 import re
 import sys
 from datetime import datetime
+from pathlib import Path
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.join(HERE, "..", "..")
 sys.path.insert(0, os.path.join(ROOT, "analysis"))
-from rodsweep.reading import measures, remarks, timings  # noqa: E402
+from rodsweep.reading import measures, remarks, texts, timings  # noqa: E402
 from rodsweep.reading.job_paths import checksum  # noqa: E402
 from rodsweep.reading.sweepfile import SweepFile  # noqa: E402
 ORIGINS = os.path.join(HERE, "origins.txt")
@@ -50,10 +51,7 @@ def read(path=ORIGINS):
 
 def find_job(name):
     """Path of a job that comes along, or None."""
-    for folder, _, files in os.walk(os.path.join(ROOT, "jobs")):
-        if f"{name}.json" in files:
-            return os.path.join(folder, f"{name}.json")
-    return None
+    return next(Path(ROOT, "jobs").rglob(f"{name}.json"), None)
 
 
 def older(origins):
@@ -81,17 +79,14 @@ def older(origins):
 def row_of(path):
     with SweepFile(path) as file:
         job, runs = file.job(), file.runs()
-        seconds = sum((moment(run["end"] or run["begin"]) - moment(run["begin"])).total_seconds() for run in runs)
+        spans = [[datetime.fromisoformat(run[name] or run["begin"]) for name in ("begin", "end")] for run in runs]
+        seconds = sum((end - begin).total_seconds() for begin, end in spans)
         processors = dict.fromkeys(run["versions"].split("; ")[-1] for run in runs)
         made = [job["name"], remarks.revisions(file), runs[0]["begin"][:10],
                 f"{seconds / 60:.1f}", " / ".join(processors), str(file.task_count),
                 str(int((file.complete & ~file.ok).sum())), disturbed(file), checksum(job),
                 models_checksum(job, os.path.dirname(runs[-1]["job"]))]
     return dict(zip(COLUMNS, made))
-
-
-def moment(text):
-    return datetime.fromisoformat(text.rstrip("Z"))
 
 
 def disturbed(file):
@@ -107,10 +102,8 @@ def disturbed(file):
 
 def write(rows):
     lines = [COLUMNS, *([rows[name][column] for column in COLUMNS] for name in sorted(rows))]
-    widths = [max(map(len, column)) for column in zip(*lines)]
     with open(ORIGINS, "w", encoding="utf-8") as file:
-        for line in lines:
-            file.write("  ".join(text.ljust(width) for text, width in zip(line, widths)).rstrip() + "\n")
+        file.write("\n".join(texts.aligned(lines, [False] * len(COLUMNS))) + "\n")
 
 
 def main():

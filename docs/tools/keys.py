@@ -67,8 +67,6 @@ class Schema:
 
     def type_of(self, node):
         """Type and bounds in words."""
-        if node.get("description") == "initial guess of cg":
-            return "[guess](#guesses)"
         node = self.plain(node)
         if node.get("description") == "initial guess of cg":
             return "[guess](#guesses)"

@@ -37,6 +37,7 @@ import re
 import sys
 import textwrap
 from decimal import ROUND_HALF_UP, Decimal
+from pathlib import Path
 
 import jinja2
 import scores
@@ -237,15 +238,14 @@ def main():
     if sys.argv[1:] and not check:
         sys.exit("usage: docs/tools/pages.py [--check]")
     for template in templates():
-        page = template.removesuffix(".j2")
+        page = Path(template.removesuffix(".j2"))
         text = rendered(template)
-        current = os.path.exists(page) and open(page, encoding="utf-8").read() == text
+        current = page.exists() and page.read_text(encoding="utf-8") == text
         if check and not current:
             stale.append(f"{os.path.relpath(page)} is not current: docs/tools/pages.py writes it of "
                          f"{os.path.relpath(template)}")
         elif not current:
-            with open(page, "w", encoding="utf-8") as file:
-                file.write(text)
+            page.write_text(text, encoding="utf-8")
             print(os.path.relpath(page))
     sys.exit("\n".join(stale) or 0)
 

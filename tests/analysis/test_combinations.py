@@ -49,6 +49,12 @@ class Combinations(running.Scripts):
         values = [part.split(" ")[-1] for part in oracle.split(" [")[:-1]]
         self.assertEqual(values, ["0.5", "4.5", "10", "16"])   # 2.25, 5 and 8 us over 0.5 us
 
+    def test_only_the_chosen_guesses_are_combined(self):
+        self.write()
+        lines = " ".join(self.blocks("--guess", "zero,oracle(0.1)")[60])
+        self.assertIn("oracle(0.1)", lines)
+        self.assertNotIn("quadratic", lines)
+
     def test_iterations_and_ratios_are_those_of_the_same_preconditioner(self):
         self.write()
         lines = self.blocks("--tolerance", "1e-2")[60]

@@ -16,7 +16,7 @@ from running import Folder
 
 
 class Drawn(Folder):
-    def study(self, width="174", newton="first", x="scene.segments", **settings):
+    def study(self, width=174, newton="first", x="scene.segments", **settings):
         """The study of a planted sweep, and its times."""
         self.addCleanup(pyplot.close, "all")
         file = self.open(**{"steps": 2, **settings})
@@ -139,11 +139,11 @@ class Legibility(Drawn):
     GUESSES = ("zero", "previous", "linear", "quadratic", "oracle(0.1)", "oracle(0.01)")
 
     def test_on_a_page_and_in_a_column(self):
-        for width, scenes in (("174", ("helix",)), ("84", ("bending_rod", "helix"))):
+        for width, scenes in ((174, ("helix",)), (84, ("bending_rod", "helix"))):
             study, times = self.study(width=width, scenes=scenes, guesses=self.GUESSES, samples=2,
                                grid={"scene.segments": [10, 20, 30, 40, 55]})
             for page in self.pages(study, times, range(4)):
-                self.assertAlmostEqual(page.figure.get_size_inches()[0] * 25.4, int(width))
+                self.assertAlmostEqual(page.figure.get_size_inches()[0] * 25.4, width)
                 self.legible(page)
 
     def test_with_decades_words_bins_and_one_point_along_x(self):

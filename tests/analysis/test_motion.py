@@ -64,6 +64,16 @@ class Errors(running.Scripts):
         for choice in ((), ("--energy-step", "0.01")):
             self.assertEqual(self.table("integrators.py", "--columns", "scene.type", *choice, files=not choice), expected)
 
+    def test_integrators_in_balance_are_against_the_best_kind_of_step_too(self):
+        self.write({**INTEGRATORS, "time.balance": (1,)},
+                   [0 if kind == "bdf2" and size == 0.005 else size for size in INTEGRATORS["time.step_s"]
+                    for kind in INTEGRATORS["time.integrator"]])
+        rows = {line.split(" 0.0")[0]: line.split() for line in self.table("integrators.py", "--columns", "scene.type")}
+        self.assertEqual(rows["helix, bdf2 in balance"][-2:], ["-", "1.00"])
+        self.assertEqual(rows["helix, euler in balance"][-2:], [f"{0.005 / np.sqrt(2):.2g}", "1.00"])
+        said = self.run_script("integrators.py", "sweep.h5", "--energy-step", "0.3", code=2).stderr
+        self.assertIn("--energy-step 0.3: the steps are 0.005, 0.01, 0.02, 0.04", said)
+
     def test_files_without_several_steps_or_trajectories_are_refused(self):
         self.write_integrators(**{"time.step_s": (0.02,), "time.integrator": ("bdf2",)})
         self.refused("integrators.py", "sweep.h5", words="time.step_s")

@@ -153,9 +153,12 @@ class Frames(Opened):
         self.assertEqual(parts[0].attrs["unit"]["scene.youngs_modulus_pa"], "Pa")
 
     def test_a_closed_loop_and_direct_simulations_have_frames(self):
-        closed = self.open(scenes=("helix",), closed_loop=True, failed={}, pending=()).tasks(where="tolerance=1e-2")
+        opened = self.open(scenes=("helix",), closed_loop=True, failed={}, pending=())
+        closed, steps = opened.tasks(where="tolerance=1e-2"), opened.steps()
         self.assertEqual(closed.groupby("guess").size().to_dict(), dict.fromkeys(synthetic.GUESSES, 12))
         self.assertTrue((closed.guess == closed.own_guess).all())    # the guess that advances the rods
+        owners = dict(zip(closed.task, closed.own_guess))
+        self.assertEqual([owners[task] for task in steps.task], list(steps.own_guess))
         direct = self.open(method="direct", plant=synthetic.Plant())
         self.assertEqual(len(direct.tasks()), 23)
         self.assertEqual(len(direct.steps()), 23 * 2)
@@ -170,6 +173,10 @@ class Frames(Opened):
 
 
 class Datasets(Opened):
+    def test_conditions_that_nothing_meets_leave_an_empty_one(self):
+        found = self.open().dataset("solves", where=["guess=quadratic", "step>1000000"])
+        self.assertEqual((found.sizes["guess"], found.sizes["row"]), (1, 0))
+
     def test_guess_and_tolerance_are_axes(self):
         dataset = self.open().dataset("tasks")
         self.assertEqual(dict(dataset.sizes), {"task": 23, "guess": 4, "cg_tolerance": 8})
@@ -338,8 +345,9 @@ class Export(Scripts):
                                   ("did you mean time.newton_iterations?\n", "--where", "newton=0"),
                                   (" more (export.py --list and results.columns()", "--columns", "nope"),
                                   ("named twice", "--columns", "task,task"),
-                                  ("COLUMN=VALUE", "--where", "newton"), ('"x"', "--where", "sample=x", "-o", "x.csv"),
-                                  ("No such file", "--columns", "task", "-o", "none/out.csv")):
+                                  ("COLUMN=VALUE", "--where", "newton"), ('"x"', "--where", "sample=x", "-o", "x.csv")):
             self.refused("export.py", "sweep.h5", *arguments, words=words)
         self.assertEqual(sorted(os.listdir(self.folder)), ["out.csv", "sweep.h5"])
+        self.run_script("export.py", "sweep.h5", "-o", "new/out.csv")
+        self.assertEqual(os.listdir(os.path.join(self.folder, "new")), ["out.csv"])
         self.assertIn("iterations_sum\n", self.run_script("export.py", "sweep.h5", "--list").stdout)

@@ -64,6 +64,16 @@ class Studies(unittest.TestCase):
     def test_a_missing_program_is_named(self):
         self.assertEqual(self.main("small")[1], "studies.py: there is no build/rodsweep: run `make build`")
 
+    def test_a_study_whose_jobs_read_results_keeps_to_that_folder(self):
+        for name, refused in (("temporal", True), ("variants", True), ("score", True), ("integrators", False)):
+            with mock.patch.object(sys, "argv", ["studies.py", name, "--results", "x", "--dry-run"]), \
+                    contextlib.redirect_stdout(io.StringIO()):
+                if refused:
+                    with self.assertRaisesRegex(SystemExit, f"{name} needs results/ of this folder: leave out --results"):
+                        studies.main()
+                else:
+                    studies.main()
+
     def test_a_dry_run_prints_the_commands(self):
         printed, code = self.main("small", "--dry-run")
         self.assertEqual((printed.splitlines()[1], code), ("echo made >table", 0))

@@ -81,11 +81,11 @@ class Page:
                 return legend, box.height / self.figure.dpi / style.MM + 1.5
             legend.remove()
 
-    def label_y(self, axes, panel, text):
-        """Labels the first panel of a line; the others get no label and no numbers."""
+    def label_y(self, axes, panel, text, shared=True):
+        """Labels the first panel of a line; the others get no label and, if `shared`, no numbers."""
         if panel % self.columns == 0:
             axes.set_ylabel(text, labelpad=2)
-        else:
+        elif shared:
             axes.tick_params(labelleft=False)
 
     def colour_bar(self, mappable, text):
@@ -121,7 +121,6 @@ class Page:
 
     def save(self, folder, name, formats=("pdf", "png"), caption=True):
         """Writes a file of each format; returns their paths. The same figure gives the same bytes."""
-        os.makedirs(folder, exist_ok=True)
         width, height = self.figure.get_size_inches()
         box = None if caption else Bbox([[0, self.notes_mm * style.MM], [width, height]])
         paths = [os.path.join(folder, f"{name}.{ending}") for ending in formats]

@@ -41,7 +41,6 @@ PARTS = {  # parts of a solve's time: colour, hatch
     "assembly": ("#c9c9c9", ""),
     "guess": ("#E69F00", "////"),
     "CG": ("#4b93c3", ""),
-    "direct": ("#5b5b5b", "...."),
 }
 RODS = ("#2f6f9f", "#c8553d", "#4f8a5b", "#d9a03f", "#7a5c99", "#5aa5b5", "#a8475c", "#8a8f3c")
 HELD = "#4a4e54"    # segments that a clamp holds

@@ -104,8 +104,9 @@ def of_guesses(file, options):
 
 def of_tasks(file, options, failed_too=False):
     """A Study of the chosen tasks that ended ok (failed_too: of all complete ones). KeyNotFound if there is none."""
-    chosen = commandline.chosen_tasks(file, options)
-    return _study(file, options, chosen, commandline.chosen_guesses(file, options), failed_too)
+    guesses = commandline.chosen_guesses(file, options)
+    chosen = commandline.chosen_tasks(file, options) & commandline.advanced_by(file, guesses)
+    return _study(file, options, chosen, guesses, failed_too)
 
 
 def _study(file, options, chosen, guesses, failed_too=False):
@@ -113,8 +114,7 @@ def _study(file, options, chosen, guesses, failed_too=False):
     sims = measures.simulations(file, chosen, failed_too)
     if not len(sims):
         raise KeyNotFound(f"{file.path} has no simulation to show yet: {census.text()}")
-    return Study(file, sims, guesses, style.guess_styles(file.guesses), options.newton, style.WIDTHS_MM[options.width],
-                 census)
+    return Study(file, sims, guesses, style.guess_styles(file.guesses), options.newton, options.width, census)
 
 
 def handles(series):
@@ -141,10 +141,10 @@ def parser(*about, **choices):
     return made
 
 
-def add_figure_arguments(made):
+def add_figure_arguments(made, otherwise="figures/ beside the file"):
     made.add_argument("-o", "--output", metavar="DIR", help="folder of the figures; those of the same name are "
-                      "replaced (default: figures/ beside the file)")
-    made.add_argument("--width", choices=list(style.WIDTHS_MM), default="174",
+                      f"replaced (default: {otherwise})")
+    made.add_argument("--width", type=int, choices=(84, 174), default=174,
                       help="width of the figures in mm: a column or a page (default: 174)")
     made.add_argument("--format", metavar="F,…", type=formats, default=("pdf", "png"),
                       help="pdf, png and svg, separated by commas (default: pdf,png)")
@@ -166,7 +166,7 @@ def save(file, options, pages, choices=()):
     folder = options.output or os.path.join(os.path.dirname(file.path), "figures")
     stem = os.path.splitext(os.path.basename(file.path))[0] + (f"-{options.scene}" if options.scene else "")
     endings = [*choices, "all-newton" if options.newton == "all" else "",
-               "" if options.width == "174" else f"{options.width}mm"]
+               "" if options.width == 174 else f"{options.width}mm"]
     ending = "".join(f"-{text}" for text in endings if text)
     for name, page in pages.items():
         print("\n".join(page.save(folder, f"{stem}-{name}{ending}", options.format, not options.no_caption)))

@@ -14,7 +14,6 @@ from rodsweep.drawing import looks
 from rodsweep.drawing.looks import KINDS, SPARE
 
 MM = 1 / 25.4
-WIDTHS_MM = {"84": 84, "174": 174}
 
 DIVERGING = colors.LinearSegmentedColormap.from_list("blue to orange", [
     "#0b4f8a", "#4b93c3", "#a9cfe4", "#f7f7f5", "#f5c79a", "#e08a3c", "#a34a00"])

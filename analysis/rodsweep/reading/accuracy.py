@@ -10,6 +10,15 @@ from rodsweep.reading.errors import KeyNotFound
 REST, ASSEMBLY, DIRECT, GUESS, CG = ("/timing/steps/rest_s", *(f"/timing/solves/{part}_s" for part in
                                                                ("assemble", "direct", "guess", "cg")))
 
+KINDS = {("euler", 0): "step of Shao et al.", ("euler", 1): "Euler in balance", ("bdf2", 0): "BDF2",
+         ("bdf2", 1): "BDF2 in balance"}    # of steps, by time.integrator and time.balance; the last is the best reference
+
+
+def kinds(file):
+    """The kind of step of every task, a key of KINDS."""
+    return [(str(integrator), int(balance)) for integrator, balance in
+            zip(file.values("time.integrator", "euler"), file.values("time.balance", 0))]
+
 
 def frames(file, task):
     """{time in ms, rounded: positions [segment, 3]}. Raises KeyNotFound if the file has no trajectories."""
@@ -30,6 +39,10 @@ def distances(path, exact):
     relative to the diagonal of the box around all segments at the start."""
     apart = [np.sqrt(np.square(path[time] - exact[time]).sum(axis=1).mean()) for time in path if time > 0 and time in exact]
     return measures.quotient(apart, np.linalg.norm(np.ptp(exact[0.0], axis=0)))
+
+
+def root_mean_square(distances):
+    return np.sqrt(np.square(distances).mean()) if len(distances) else np.nan
 
 
 def step_s(file, task):

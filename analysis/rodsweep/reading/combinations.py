@@ -75,8 +75,8 @@ def panels(file, sims, x):
     return [panel.without(same) for panel in found]
 
 
-def cells(file, sims, panel, x, newton):
-    """[Cell], sorted by the number of joints."""
+def cells(file, sims, panel, x, newton, guesses):
+    """[Cell] with these guesses, sorted by the number of joints."""
     measured = _Measured(file, sims, newton)
     codes = file.parameter(x).codes()[sims.any_task]
     found = []
@@ -85,7 +85,7 @@ def cells(file, sims, panel, x, newton):
         joints = file.results("joints", sims.any_task[rows])
         task = sims.any_task[rows[0]]
         found.append(Cell(file.parameter(x).text(task), float(np.median(joints)), np.unique(sims.sample[rows]),
-                          measured.combinations(rows)))
+                          measured.combinations(rows, guesses)))
     return sorted(found, key=lambda cell: cell.joints)
 
 
@@ -118,7 +118,7 @@ class _Measured:
             return measures.quotient(1e6 * times.direct_s[:, zero], times.solves[:, zero])
         return timings.direct_step_us(self.file, self.sims)
 
-    def combinations(self, rows):
+    def combinations(self, rows, guesses):
         draws = np.unique(self.sims.sample[rows])
         guessing = rows[measures.has_guesses(self.file)[self.sims.any_task[rows]]]
         solvers = {}
@@ -127,7 +127,7 @@ class _Measured:
             solvers.setdefault(text.replace("_", " "), []).append(row)
         found = [self._direct(rows, guessing, draws)]
         for solver, members in solvers.items():
-            found += [self._of(draws, np.array(members), solver, g) for g in range(len(self.file.guesses))]
+            found += [self._of(draws, np.array(members), solver, g) for g in guesses]
         return [one for one in found if np.isfinite(one.time_us).any()]
 
     def _direct(self, rows, guessing, draws):

@@ -112,25 +112,25 @@ def run(main):
         finally:    # also after --help, which exits
             sys.stdout.flush()
     except UserError as error:
-        _stop(error.args[0])
+        stop(error.args[0])
     except OutputLost as error:
         _discard_output()
-        _stop(f"writing to standard output failed: {error}", OUTPUT_LOST)
+        stop(f"writing to standard output failed: {error}", OUTPUT_LOST)
     except KeyboardInterrupt as interrupt:
         _discard_output()
-        _stop(f"stopped by {interrupt}", STOPPED)
+        stop(f"stopped by {interrupt}", STOPPED)
     except BrokenPipeError:  # the reader of the pipe closed it
         _discard_output()
     except OSError as error:
         # h5py raises OSError without errno for unreadable rows
-        _stop(f"{error.filename or 'output'}: {error.strerror}" if error.errno else f"the file is damaged: {error}")
+        stop(f"{error.filename or 'output'}: {error.strerror}" if error.errno else f"the file is damaged: {error}")
     except MemoryError:
-        _stop("there is not enough memory, or the file is damaged; check it with `rodsweep info FILE --verify`")
+        stop("there is not enough memory, or the file is damaged; check it with `rodsweep info FILE --verify`")
     except Exception as error:
         if sys.flags.dev_mode:
             raise
         words = " ".join(str(error).split())
-        _stop(f"the file is damaged, or this script has a bug: {type(error).__name__}: {words}; "
+        stop(f"the file is damaged, or this script has a bug: {type(error).__name__}: {words}; "
               "check the file with `rodsweep info FILE --verify`")
 
 
@@ -138,7 +138,7 @@ def _discard_output():
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _stop(message, code=USER_ERROR):
+def stop(message, code=USER_ERROR):
     print(f"{os.path.basename(sys.argv[0])}: {printable(message)}", file=sys.stderr)
     sys.exit(code)
 
@@ -161,6 +161,11 @@ def chosen_guesses(file, arguments):
     if not arguments.guess:
         return list(range(len(file.guesses)))
     return sorted({file.guess_index(label.strip()) for label in texts.split_labels(arguments.guess)})
+
+
+def advanced_by(file, guesses):
+    """Mask of the tasks that one of these guesses may advance: all but those of closed loops with another one."""
+    return (file.own_guess < 0) | np.isin(file.own_guess, guesses)
 
 
 def chosen_tolerances(file, arguments):

@@ -113,6 +113,10 @@ class SweepFile:
             raise not_found("parameter", name, self.parameters, ALL_BY)
         return self.parameters[name]
 
+    def values(self, name, otherwise):
+        """A parameter's value for every task; `otherwise` if the file does not have it."""
+        return self.parameters[name].values if name in self.parameters else np.full(self.task_count, otherwise)
+
     def swept(self):
         """Names of the parameters that vary over the job."""
         return [p.name for p in self.parameters.values() if p.swept]

@@ -7,7 +7,7 @@ import numpy as np
 import scipy.sparse
 
 from rodsweep.reading.errors import SweepFileError
-from rodsweep.reading.hdf5 import as_text, opened
+from rodsweep.reading.hdf5 import UNREADABLE, as_text, opened
 
 
 @dataclass(frozen=True)
@@ -54,10 +54,14 @@ class Systems:
         if kind != "systems":
             self.h5.close()
             raise SweepFileError(f"{path} holds no linear systems: `rodsweep systems FILE TASK` writes those of a task")
-        self.rods = {int(name): Rod(*(group[column][:] for column in Rod.__dataclass_fields__))
-                     for name, group in self.h5["rods"].items()}
-        places = [(step, newton, rod, k) for rod in self.rods
-                  for k, (step, newton) in enumerate(zip(self._of(rod, "step")[:], self._of(rod, "newton")[:]))]
+        try:
+            self.rods = {int(name): Rod(*(group[column][:] for column in Rod.__dataclass_fields__))
+                         for name, group in self.h5["rods"].items()}
+            places = [(step, newton, rod, k) for rod in self.rods
+                      for k, (step, newton) in enumerate(zip(self._of(rod, "step")[:], self._of(rod, "newton")[:]))]
+        except UNREADABLE as error:
+            self.h5.close()
+            raise SweepFileError(f"{path} is damaged: {error}") from error
         self._places = sorted(tuple(map(int, place)) for place in places)
 
     def _of(self, rod, name):

@@ -75,11 +75,18 @@ def simulations_text(counts):
     return f"{text} simulation{'s' if text != '1' else ''}"
 
 
-def aligned(rows):
-    """Columns of equal width: the first is left-aligned, the others are right-aligned."""
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    return ["  ".join([row[0].ljust(widths[0])] + [cell.rjust(w) for cell, w in zip(row[1:], widths[1:])]).rstrip()
-            for row in rows]
+def aligned(rows, right=None):
+    """Columns of equal width. `right`: whether each is right-aligned, by default all but the first."""
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    right = [False] + [True] * len(widths) if right is None else right
+    return ["  ".join(cell.rjust(w) if r else cell.ljust(w) for cell, w, r in zip(row, widths, right)).rstrip() for row in rows]
+
+
+def shortened(values, digits):
+    """Numbers, in lists as they come, with so many digits; None if not finite."""
+    if np.ndim(values):
+        return [shortened(part, digits) for part in values]
+    return float(f"{values:.{digits}g}") if np.isfinite(values) else None
 
 
 def write_csv(out, columns, records):

@@ -89,7 +89,7 @@ class Tidy:
         names = ["task"] if self.level != "tasks" else ["task", "outcome"]
         names += ["scene.type"] if "scene.type" in self.file.parameters else []
         names += ["sample", *(name for name in self.swept if name != "scene.type")]
-        names += ["guess"] if self.by_guess else []
+        names += ["guess"] if self.by_guess else ["own_guess"] if (self.file.own_guess >= 0).any() else []
         names += ["tolerance"] if self.by_tolerance else []
         for name, column in self.datasets.items():
             if "other" in column.axes or name in names:
@@ -175,8 +175,9 @@ class Tidy:
                 raise KeyNotFound(f"{condition.text}: {condition.column} has a value for every guess or tolerance, so "
                                   "it cannot choose rows; use where() of the dataset")
         needed = list(dict.fromkeys([*names, *(condition.column for condition in conditions_left)]))
-        owners, found = [], {name: [] for name in names}
-        for some, rows in self._row_blocks(tasks, self._paths(needed)):
+        owners, found, paths = [], {name: [] for name in names}, self._paths(needed)
+        nothing = {path: np.empty(0, np.int64) if path == ROW else decoded(self.file.h5[path][:0]) for path in paths}
+        for some, rows in itertools.chain([(tasks[:0], nothing)], self._row_blocks(tasks, paths)):
             kept = np.ones(len(some), dtype=bool)
             for condition in conditions_left:
                 kept &= condition.met(rows[self.datasets[condition.column].path])
@@ -185,15 +186,8 @@ class Tidy:
                 values, axes = rows[self.datasets[name].path][kept], self.datasets[name].axes
                 values = values[:, guesses] if "guess" in axes else values
                 found[name].append(values[:, :, tolerances] if "tolerance" in axes else values)
-        if not owners:
-            empty = {name: np.empty((0, *self._shape(self.datasets[name].path))) for name in names}
-            return np.empty(0, dtype=np.int64), guesses, tolerances, empty
         whole = {name: np.concatenate(parts) for name, parts in found.items()}
         return np.concatenate(owners), guesses, tolerances, whole
-
-    def _shape(self, path):
-        """Of a dataset's row."""
-        return () if path == ROW else self.file.h5[path].shape[1:]
 
     def narrowed(self, where):
         """The tasks, guesses and tolerances that meet the conditions, and the remaining conditions, which are on

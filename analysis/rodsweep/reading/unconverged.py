@@ -35,7 +35,7 @@ def missed_text(file, tasks):
 
 def newton_text(file, tasks, times=LARGE):
     """A sentence on the steps that end with a Newton residual over `times` newton_tolerance; empty if there are none."""
-    tolerance = np.maximum(_values(file, "time.newton_tolerance", np.nan), LEAST_TOLERANCE)
+    tolerance = np.maximum(file.values("time.newton_tolerance", np.nan), LEAST_TOLERANCE)
     return _steps_text(file, tasks, "/steps/newton_residual", np.where(_has_newton(file), times * tolerance, np.nan),
                        f"a Newton residual over {f'{times:,} times ' if times > 1 else ''}newton_tolerance",
                        "More newton_iterations or a smaller time step may help.")
@@ -43,8 +43,8 @@ def newton_text(file, tasks, times=LARGE):
 
 def balance_text(file, tasks):
     """The same on steps in balance that end with a momentum residual over momentum_tolerance."""
-    balance = _has_newton(file) & (_values(file, "time.balance", 0) == 1)    # others never balance
-    tolerance = _values(file, "time.momentum_tolerance", np.nan)
+    balance = _has_newton(file) & (file.values("time.balance", 0) == 1)    # others never balance
+    tolerance = file.values("time.momentum_tolerance", np.nan)
     return _steps_text(file, tasks, "/steps/momentum_residual", np.where(balance, tolerance, np.nan),
                        "a momentum residual over momentum_tolerance",
                        "More newton_iterations or a smaller time step may help.")
@@ -52,11 +52,7 @@ def balance_text(file, tasks):
 
 def _has_newton(file):
     """Of every task, whether its method has Newton iterations."""
-    return np.isin(_values(file, "solve.method", ""), ("cg", "direct"))
-
-
-def _values(file, name, otherwise):
-    return file.parameters[name].values if name in file.parameters else np.full(file.task_count, otherwise)
+    return np.isin(file.values("solve.method", ""), ("cg", "direct"))
 
 
 def _steps_text(file, tasks, path, most, what, remedy):

@@ -2,10 +2,10 @@
 
 from rodsweep.drawing import looks
 
-SYMBOLS = {"o": "circle", "v": "wye", "s": "square", ">": "diamond", "8": "hexagon", "P": "cross", "^": "triangle",
-           "<": "triangle2", "X": "times", "*": "star", "D": "diamond", "x": "times", "H": "hexagon", "h": "hexagon",
-           "p": "square2", "d": "diamond2", (5, 1, 0): "star", (4, 2, 0): "asterisk", (3, 1, 0): "wye",
-           (3, 2, 0): "asterisk", (6, 1, 0): "asterisk", (4, 1, 0): "star"}
+SYMBOLS = {"o": "Circle", "v": "Wye", "s": "Square", ">": "Diamond", "8": "Plus", "P": "Cross", "^": "Triangle",    # of d3
+           "<": "Triangle2", "X": "Times", "*": "Star", "D": "Diamond", "x": "Times", "H": "Plus", "h": "Plus",
+           "p": "Square2", "d": "Diamond2", (5, 1, 0): "Star", (4, 2, 0): "Asterisk", (3, 1, 0): "Wye",
+           (3, 2, 0): "Asterisk", (6, 1, 0): "Asterisk", (4, 1, 0): "Star"}
 DASH = 1.6           # pixels per unit of a dash
 ON_DARK = 0.30       # smallest relative luminance of a line on a dark page
 
@@ -13,7 +13,7 @@ ON_DARK = 0.30       # smallest relative luminance of a line on a dark page
 def packed(found):
     """{label: looks.Look} in the form that the page reads."""
     return [{"label": label, "light": look.colour, "dark": on_dark(look.colour),
-             "symbol": SYMBOLS.get(look.marker, "circle"),
+             "symbol": SYMBOLS.get(look.marker, "Circle"),
              "dash": " ".join(f"{DASH * length:g}" for length in look.dash[1]) if look.dash[1][-1] else ""}
             for label, look in found.items()]
 

@@ -47,8 +47,9 @@ class Answer:
 
     def as_json(self):
         return {"level": self.level, "kind": self.kind, "text": self.setting.text(), **self.setting.as_json(),
-                "tuning_s": _short(self.tuning_s, 4), "error": _listed(self.error, 4), "products": _short(self.products, 4),
-                "network": _short(self.network, 3), "time_s": _listed(self.time_s, 5)}
+                "tuning_s": texts.shortened(self.tuning_s, 4), "error": texts.shortened(self.error, 4),
+                "products": texts.shortened(self.products, 4),
+                "network": texts.shortened(self.network, 3), "time_s": texts.shortened(self.time_s, 5)}
 
     @classmethod
     def from_json(cls, found):
@@ -56,14 +57,6 @@ class Answer:
         error[np.isnan(error)] = np.inf
         return cls(found["level"], found["kind"], Setting.from_json(found), found["tuning_s"], error, found["products"],
                    found["network"], np.array(found["time_s"], dtype=float))
-
-
-def _short(value, digits):
-    return float(f"{value:.{digits}g}") if np.isfinite(value) else None
-
-
-def _listed(values, digits):
-    return [_listed(part, digits) for part in values] if np.ndim(values) else _short(values, digits)
 
 
 @dataclass(frozen=True)
@@ -156,7 +149,7 @@ def training_minutes(root, settings):
     for path in sorted({path for setting in settings for path in setting.models()}):
         trainings = dict.fromkeys(model_of(path, number) for number in TRAININGS)
         found[os.path.splitext(os.path.basename(path))[0]] = [
-            _short(modelfile.read(os.path.join(root, training)).processor_seconds / 60, 3) for training in trainings]
+            texts.shortened(modelfile.read(os.path.join(root, training)).processor_seconds / 60, 3) for training in trainings]
     return found
 
 

@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from rodsweep.program import TASKS_FAILED, JobWarning, call
-from rodsweep.reading import accuracy, job_paths, measures
+from rodsweep.reading import accuracy, job_paths, measures, texts
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.scoring.scenes import TUNING
@@ -84,7 +84,6 @@ class Runs:
                               f"{self.scene.name}")
 
     def publish(self):
-        os.makedirs(os.path.dirname(self.scene.measured("")), exist_ok=True)
         with open(self.path, "rb") as file, outputs.whole(self.scene.measured(".jsonl.xz")) as part, open(part, "wb") as out:
             out.write(lzma.compress(file.read(), preset=9 | lzma.PRESET_EXTREME))
 
@@ -167,8 +166,7 @@ class Runs:
                             self._store(setting, draws, of, store)
 
     def _store(self, setting, draws, of, store):
-        numbers = {name: [float(f"{value:.4g}") if np.isfinite(value) else None for value in getattr(of, name)]
-                   for name in ("error", "time_s", "products", "network")}
+        numbers = {name: texts.shortened(getattr(of, name), 4) for name in ("error", "time_s", "products", "network")}
         models = {path: self._model(path) for path in setting.models()}
         entry = {**setting.as_json(), "draws": draws, "models": models, **numbers}
         if store and OWN not in setting.kinds():    # a guess of the user's may change

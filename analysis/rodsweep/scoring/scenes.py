@@ -10,7 +10,7 @@ import json
 import os
 
 from rodsweep.reading import job_paths
-from rodsweep.reading.errors import SweepFileError, not_found
+from rodsweep.reading.errors import KeyNotFound, SweepFileError, not_found
 from rodsweep.scoring import settings
 from rodsweep.scoring.settings import Axes
 
@@ -31,7 +31,13 @@ PAPER = {"bending_rod": "bending-paper-best", "helix": "helix-paper-best", "tree
 
 
 def names(root=ROOT):
-    return sorted(name.removesuffix(ENDING) for name in os.listdir(os.path.join(root, JOBS)) if name.endswith(ENDING))
+    """Raises KeyNotFound if there are none, as where pip installed the package."""
+    folder = os.path.join(root, JOBS)
+    there = os.listdir(folder) if os.path.isdir(folder) else []
+    found = [name.removesuffix(ENDING) for name in there if name.endswith(ENDING)]
+    if not found:
+        raise KeyNotFound(f"{folder} has no scenes (NAME{ENDING}): give the folder of rodsweep's sources with --root")
+    return sorted(found)
 
 
 class Scene:

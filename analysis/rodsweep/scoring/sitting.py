@@ -7,14 +7,15 @@ the processor time of all steps but the first, whole. Times of different sitting
 longer than LONGEST_S, or went on on another machine or with another program, is refused.
 """
 
-import datetime
 import json
 import os
 import random
 import tempfile
+from datetime import datetime
 
 import numpy as np
 
+from rodsweep.reading import texts
 from rodsweep.reading.errors import SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 from rodsweep.scoring.runs import effort, run_job
@@ -69,7 +70,8 @@ class Sitting:
                 "runs": [{name: str(run[name]) for name in ("begin", "end", *SAME)} for run in self.runs],
                 "chosen": [{"level": level, "kind": kind, "tuning_s": tuned(setting), **setting.as_json()}
                            for (level, kind), setting in chosen.items()],
-                "times": [{**setting.as_json(), "time_s": _rounded(of[:, 0]), "products": _rounded(of[:, 1])}
+                "times": [{**setting.as_json(), "time_s": texts.shortened(of[:, 0], 5),
+                       "products": texts.shortened(of[:, 1], 5)}
                           for setting, of in times.items()]}
 
     def repeated(self, settings, draws, samples):
@@ -84,23 +86,16 @@ def listed(candidates):
             for (level, kind), some in candidates.items()]
 
 
-def _rounded(rows):
-    return [[float(f"{value:.5g}") if np.isfinite(value) else None for value in row] for row in rows]
-
-
 def require_one(runs):
     """Raises SweepFileError unless these rows of /runs are of one sitting."""
     for name in SAME:
         if len({str(run[name]) for run in runs}) > 1:
             raise SweepFileError(f"times of different sittings are not compared: they differ in {name}; time all again")
-    begin, end = (_moment(of) for of in (min(str(run["begin"]) for run in runs), max(str(run["end"]) for run in runs)))
+    begin = datetime.fromisoformat(min(str(run["begin"]) for run in runs))
+    end = datetime.fromisoformat(max(str(run["end"]) for run in runs))
     if (end - begin).total_seconds() > LONGEST_S:
         raise SweepFileError(f"times of different sittings are not compared: these took from {begin} to {end}, more than "
                              f"{LONGEST_S} s; use fewer draws")
-
-
-def _moment(text):
-    return datetime.datetime.fromisoformat(text.replace("Z", "+00:00"))
 
 
 def read(path):

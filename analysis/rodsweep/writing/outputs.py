@@ -23,8 +23,9 @@ def check(path, options):
 
 @contextlib.contextmanager
 def whole(path):
-    """A temporary name to write to, with the same ending. It becomes `path` when the file is complete, and is removed
-    after an error."""
+    """A temporary name to write to, with the same ending, in a folder that is made if need be. It becomes `path` when the
+    file is complete, and is removed after an error."""
+    os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
     stem, ending = os.path.splitext(path)
     part = f"{stem}.part{ending}"
     try:

@@ -45,7 +45,7 @@ function drawChart(family, measure, axis, panel, series, range, width) {
     const dx = series.length > 1 ? spread * (rank / (series.length - 1) - 0.5) : 0;
     const colour = `var(--line-${index})`;
     const sure = points.filter((point) => point.low !== null);
-    const stroked = strokedSymbols.has(line.symbol);
+    const stroked = isStroked(line);
     const common = { x: "x", dx, ariaDescription: `line-${index}` };
     marks.push(
       Plot.ruleX(sure, { ...common, y1: "low", y2: "high", stroke: colour, strokeWidth: 1.2, strokeOpacity: 0.7 }),
@@ -64,7 +64,7 @@ function drawChart(family, measure, axis, panel, series, range, width) {
       Plot.dot(points, {
         ...common,
         y: "value",
-        symbol: symbols[line.symbol],
+        symbol: symbolOf(line),
         r: 3.8,
         fill: stroked ? "none" : colour,
         stroke: stroked ? colour : "var(--card)",

@@ -38,13 +38,11 @@ function addCursor(frame, plot, { measure, axis, panel, series, say }) {
           "tbody",
           {},
           ...lines.map((one) => {
-            const swatch = svgElement("svg", { class: "swatch", width: 30, height: 12, viewBox: "0 0 30 12" });
-            drawSwatch(swatch, one.line);
             const estimate = at(one, k);
             return element(
               "tr",
               { class: one.index === chosen ? "chosen" : null },
-              element("td", {}, swatch),
+              element("td", {}, swatchOf(one.line)),
               element("td", {}, one.line.label),
               element("td", { class: "number" }, valueText(estimate, unit)),
               element("td", { class: "interval" }, intervalText(estimate, unit)),

@@ -89,10 +89,7 @@ function startExplorer(root, sweep, family, number) {
     element(
       "div",
       { class: "segmented" },
-      ...[
-        ["first", "first"],
-        ["all", "all"],
-      ].flatMap(([key, text]) => [
+      ...["first", "all"].flatMap((key) => [
         element("input", {
           type: "radio",
           name: id("newton"),
@@ -104,44 +101,25 @@ function startExplorer(root, sweep, family, number) {
             update();
           },
         }),
-        element("label", { for: id(`newton-${key}`) }, text),
+        element("label", { for: id(`newton-${key}`) }, key),
       ]),
     ),
   );
 
+  const settingOf = (panel, key) => (key === "scene" ? panel.scene : panel.settings[key]);
+
   /** A choice for the scene and for every grid of the job that is not along x. */
   function buildFilters() {
-    const scenes = [...new Set(axis().panels.map((panel) => panel.scene))];
-    const made = [];
-    if (scenes.length > 1)
-      made.push(
-        filter(
-          "scene",
-          "Scene",
-          scenes.map((scene) => [scene, scene.replaceAll("_", " ")]),
-        ),
-      );
-    for (const { key, label } of axis().settings) {
-      const values = [
-        ...new Set(
-          axis()
-            .panels.filter((panel) => key in panel.settings)
-            .map((panel) => panel.settings[key]),
-        ),
-      ];
-      if (values.length > 1)
-        made.push(
-          filter(
-            key,
-            label,
-            values.map((value) => [value, value.replaceAll("_", " ")]),
-          ),
-        );
+    filters.replaceChildren();
+    for (const { key, label } of [{ key: "scene", label: "Scene" }, ...axis().settings]) {
+      const values = new Set(axis().panels.map((panel) => settingOf(panel, key)));
+      values.delete(undefined);
+      if (values.size > 1) filters.append(filter(key, label, [...values]));
     }
-    filters.replaceChildren(...made);
   }
 
-  function filter(key, label, options) {
+  function filter(key, label, values) {
+    const options = values.map((value) => [value, value.replaceAll("_", " ")]);
     return choice(`filter-${key}`, label, [["", "all"], ...options], "", (value) => {
       if (value) state.settings[key] = value;
       else delete state.settings[key];
@@ -150,21 +128,11 @@ function startExplorer(root, sweep, family, number) {
 
   function shownPanels() {
     return axis().panels.filter((panel) =>
-      Object.entries(state.settings).every(
-        ([key, value]) => (key === "scene" ? panel.scene : panel.settings[key]) === value,
-      ),
+      Object.entries(state.settings).every(([key, value]) => settingOf(panel, key) === value),
     );
   }
 
   const chips = family.lines.map((line, index) => {
-    const swatch = svgElement("svg", {
-      class: "swatch",
-      width: 30,
-      height: 12,
-      viewBox: "0 0 30 12",
-      "aria-hidden": "true",
-    });
-    drawSwatch(swatch, line);
     return element(
       "button",
       {
@@ -176,7 +144,7 @@ function startExplorer(root, sweep, family, number) {
           update();
         },
       },
-      swatch,
+      swatchOf(line),
       line.label,
     );
   });
@@ -185,33 +153,12 @@ function startExplorer(root, sweep, family, number) {
     { class: "legend", role: "group", "aria-label": family.name === "guesses" ? "Guesses" : "Methods" },
     ...chips,
   );
-  if (family.lines.length > 2) {
-    legend.append(
-      element(
-        "button",
-        {
-          type: "button",
-          class: "chip plain",
-          onclick: () => {
-            state.on = new Set(family.lines.keys());
-            update();
-          },
-        },
-        "All",
-      ),
-      element(
-        "button",
-        {
-          type: "button",
-          class: "chip plain",
-          onclick: () => {
-            state.on.clear();
-            update();
-          },
-        },
-        "None",
-      ),
-    );
+  for (const text of family.lines.length > 2 ? ["All", "None"] : []) {
+    const onclick = () => {
+      state.on = new Set(text === "All" ? family.lines.keys() : []);
+      update();
+    };
+    legend.append(element("button", { type: "button", class: "chip plain", onclick }, text));
   }
   const details = element("details", { class: "numbers" }, element("summary", {}, "The same as a table"), tables);
 

@@ -84,40 +84,23 @@ function drawSwatch(svg, line, isReference = false) {
     }),
   );
   if (isReference) return;
-  const symbol = symbols[line.symbol];
   svg.append(
     svgElement("path", {
-      d: d3.symbol(symbol, 36)(),
+      d: d3.symbol(symbolOf(line), 36)(),
       transform: "translate(15,6)",
-      style: strokedSymbols.has(line.symbol)
+      style: isStroked(line)
         ? `fill: none; stroke: ${colourOf(line)}; stroke-width: 1.6`
         : `fill: ${colourOf(line)}`,
     }),
   );
 }
 
-const symbols = {
-  asterisk: d3.symbolAsterisk,
-  circle: d3.symbolCircle,
-  cross: d3.symbolCross,
-  diamond: d3.symbolDiamond,
-  diamond2: d3.symbolDiamond2,
-  square: d3.symbolSquare,
-  square2: d3.symbolSquare2,
-  star: d3.symbolStar,
-  times: d3.symbolTimes,
-  triangle: d3.symbolTriangle,
-  triangle2: d3.symbolTriangle2,
-  wye: d3.symbolWye,
-  hexagon: {
-    draw(context, size) {
-      const radius = Math.sqrt((2 * size) / (3 * Math.sqrt(3)));
-      for (let k = 0; k < 6; ++k) {
-        const angle = (k * Math.PI) / 3;
-        context[k ? "lineTo" : "moveTo"](radius * Math.cos(angle), radius * Math.sin(angle));
-      }
-      context.closePath();
-    },
-  },
-};
-const strokedSymbols = new Set(["asterisk", "times"]);
+function swatchOf(line) {
+  const size = { width: 30, height: 12, viewBox: "0 0 30 12" };
+  const swatch = svgElement("svg", { class: "swatch", "aria-hidden": "true", ...size });
+  drawSwatch(swatch, line);
+  return swatch;
+}
+
+const symbolOf = (line) => d3[`symbol${line.symbol}`];
+const isStroked = (line) => ["Asterisk", "Plus", "Times"].includes(line.symbol);

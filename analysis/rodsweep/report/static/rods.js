@@ -92,6 +92,10 @@ function startFilm(figure, film) {
     return [2, 1, 0.5, 0.25, 0.1].find((value) => end / value >= 3) ?? 0.1;
   }
 
+  function onFloor(point) {
+    return along(point, film.up, film.floor - dot(point, film.up));
+  }
+
   /** Where the scene is in the first view, over all frames. */
   function fitted() {
     const low = [Infinity, Infinity],
@@ -106,7 +110,7 @@ function startFilm(figure, film) {
       for (let k = 0; k < film.points; ++k) {
         const point = pointAt(k, frame, frame, 0);
         include(point, reach);
-        if (film.floor !== null) include(along(point, film.up, film.floor - dot(point, film.up)), reach);
+        if (film.floor !== null) include(onFloor(point), reach);
       }
     }
     for (const { start, end: last, radius } of film.capsules.filter((one) => one.radius < film.extent)) {
@@ -142,11 +146,7 @@ function startFilm(figure, film) {
     context.lineCap = "round";
 
     const points = Array.from({ length: film.points }, (_, k) => pointAt(k, frame, next, share));
-    if (
-      film.floor !== null &&
-      view.forward[0] * film.up[0] + view.forward[1] * film.up[1] + view.forward[2] * film.up[2] < 0
-    ) {
-      const onFloor = (point) => along(point, film.up, film.floor - dot(point, film.up));
+    if (film.floor !== null && dot(view.forward, film.up) < 0) {
       ground(onFloor(film.centre), onto, colours);
       shadows(
         points.map((point) => onto(projected(film, view, ...onFloor(point)))),
