@@ -105,7 +105,7 @@ class Parameters(Folder):
             self.assertIn(f"{asked!r} is not in the file; did you mean {answer}?", caught.exception.args[0])
 
     def test_the_nearest_is_near(self):
-        """The cases of the program (tests/runner/job/test_job_parts.cpp), and names with a point."""
+        """The cases of the program (tests/runner/job/test_job_refusals.cpp), and names with a point."""
         known = ["length_m", "segments", "step_s", "gravity_m_s2", "zero", "previous", "scene.type", "evaluation",
                  "0.01"]
         for word, wanted in (("lenght_m", "length_m"), ("Segment", "segments"), ("steps", "step_s"), ("zreo", "zero"),

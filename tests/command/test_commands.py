@@ -29,7 +29,7 @@ def unfinished():
 
 
 class Query(Case):
-    """For its options see tests/analysis/test_query.py."""
+    """For its options see tests/analysis/test_conditions.py."""
 
     def test_csv_holds_what_the_file_holds(self):
         words = ("--columns", "task,scene.segments,scene.length_m", "--columns", "cg_ratio.oracle 0.1@1e-3")
@@ -43,15 +43,6 @@ class Query(Case):
             self.assertEqual([float(row["scene.length_m"]) for row in rows],
                              list(file.parameter("scene.length_m").values[tasks]))
         self.assert_refused(("query", sweep(), "scene.segmant=3"), "did you mean scene.segments?")
-
-    def test_a_file_that_is_not_what_its_key_says_is_refused_before_anything_runs(self):
-        path = sweep()
-        for guess, key, words in (({"copingnet": {"model": f"../{path}"}}, "copingnet.model", "not a model"),
-                                  ({"knn": {"data": f"../{path}"}}, "knn.data", "not a data set")):
-            write_job("wrong", guesses=["zero", guess])
-            for command in ("run", "plan", "validate"):
-                self.assert_refused((command, "jobs/wrong.json"), f"guesses[1].{key}", words)
-            self.assertFalse(os.path.exists("results/wrong.h5"))
 
     def test_it_reads_while_a_sweep_writes(self):
         path, job = "live.h5", write_job("live", samples=100, time={"step_s": 0.02, "steps": 40})

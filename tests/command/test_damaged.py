@@ -1,14 +1,13 @@
 #!/usr/bin/python3
-"""The commands on damaged files, on full disks and after a killed program: plain errors, never a signal."""
+"""The commands on damaged files and after a killed program: plain errors, never a signal."""
 
 import os
 import random
-import resource
 import socket
 import subprocess
 import unittest
 
-from program import ALL_DONE, DAMAGED, STOPPED, TASKS_FAILED, OUTPUT_LOST, USER_ERROR, changed, rodsweep, sweep
+from program import ALL_DONE, DAMAGED, STOPPED, TASKS_FAILED, USER_ERROR, changed, rodsweep, sweep
 
 JOB = os.path.join("jobs", "small.json")
 
@@ -80,16 +79,6 @@ class Damaged(Plain):
         self.assertRegex(said.stderr, r"\btask 0\b.*--resume")
         self.assert_plain(rodsweep("run", JOB, "-o", "changed.h5", "--resume"), ALL_DONE)
         self.assertEqual(rodsweep("info", "changed.h5", "--verify").returncode, ALL_DONE)
-
-
-class Full(Plain):
-    """A disk that fills up: files are in tests/laws/every_command.py."""
-
-    def test_text_that_has_no_room_is_an_error(self):
-        with open("text", "w", encoding="utf-8") as text:
-            said = rodsweep("schema", stdout=text, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)))
-        self.assertEqual(said.returncode, OUTPUT_LOST)
-        self.assertIn("File too large", said.stderr)
 
 
 class Left(Plain):

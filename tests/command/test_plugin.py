@@ -1,4 +1,4 @@
-"""A guess from a shared library in a job: as good as the same guess of the program, and its errors reach the user."""
+"""A guess from a shared library in a job: that of the page saves iterations, and errors reach the user."""
 
 import os
 import shutil
@@ -24,14 +24,6 @@ class Plugin(InAFolder):
         self.write(name + ".c", code)
         subprocess.run(["cc", *flags, "-shared", "-fPIC", "-I", "include", name + ".c", "-o", name + ".so"], check=True)
 
-    def test_it_saves_what_the_same_guess_of_the_program_saves(self):
-        self.ran("run", self.job("previous", {"plugin": {"library": "mine.so"}}), "-o", "s.h5")
-        with h5py.File("s.h5") as file:
-            iterations = file["/tasks/iterations_sum"][0]
-            self.assertEqual(iterations[2].tolist(), iterations[1].tolist())
-            self.assertLess(iterations[1, 1], iterations[0, 1])
-            self.assertEqual([label.decode() for label in file["/axes/guess"]], ["zero", "previous", "plugin mine"])
-
     def test_the_example_of_the_page_works(self):
         with open(os.path.join(SOURCE, "docs", "extending.md"), encoding="utf-8") as page:
             code = page.read().split("```c\n")[1].split("```")[0]
@@ -40,6 +32,7 @@ class Plugin(InAFolder):
         with h5py.File("s.h5") as file:
             iterations = file["/tasks/iterations_sum"][0]
             self.assertLess(iterations[1, 0], iterations[0, 0])
+            self.assertEqual(file["/axes/guess"][1], b"plugin half")
 
     def test_a_library_that_was_cut_off_anywhere_is_refused(self):
         with open("mine.so", "rb") as file:

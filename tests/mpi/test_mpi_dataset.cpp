@@ -12,13 +12,6 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace test_mpi_dataset {
 
-Json ragged_job() {
-  Json job = data_job();
-  job["samples"] = 3;
-  job["scene"]["segments"] = {{"integer", {4, 12}}};
-  return job;
-}
-
 /// Checksum of all numbers of all systems and of the scene.
 std::string fingerprint(const StoredSimulation& simulation) {
   Checksum sum;
@@ -52,13 +45,7 @@ TEST_CASE("ranks that read a data set together have what a process alone reads, 
 TEST_CASE("what goes wrong with a data set is said by all ranks") {
   CHECK_THAT(message_of<CollectiveError>([] { DatasetReader("none.h5", MPI_COMM_WORLD); }),
              ContainsSubstring("none.h5"));
-  if (own_rank() == 0) {
-    const Plan plan = make_data_set("damaged.h5", ragged_job());
-    const hdf5::File file = hdf5::open_file("damaged.h5", H5F_ACC_RDWR);
-    const auto row = static_cast<hsize_t>(plan.task(1).rows[Rows::system_joint].first);
-    const std::vector<double> wrong(6, 0.5);
-    hdf5::RowDataset(file.id(), "/systems/joints/solution").write(hdf5::type_of<double>(), row, 1, wrong.data());
-  }
+  if (own_rank() == 0) damage("damaged.h5", make_data_set("damaged.h5", ragged_job()));
   const DatasetReader data("damaged.h5", MPI_COMM_WORLD);
   CHECK(data.read(0).systems.size() == 4);
   CHECK_THAT(message_of<CollectiveError>([&] { data.read(1); }),

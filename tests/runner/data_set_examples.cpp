@@ -40,4 +40,20 @@ Plan make_data_set(const std::filesystem::path& path, const Json& job, std::int6
   return plan;
 }
 
+Json ragged_job() {
+  Json job = data_job();
+  job["samples"] = 3;
+  job["seed"] = 4;
+  job["scene"]["segments"] = {{"integer", {4, 12}}};
+  job["scene"]["damping_per_s"] = 0.5;
+  return job;
+}
+
+void damage(const std::filesystem::path& path, const Plan& plan) {
+  const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
+  const auto row = static_cast<hsize_t>(plan.task(1).rows[Rows::system_joint].first);
+  const std::vector<double> wrong(6, 0.5);
+  hdf5::RowDataset(file.id(), "/systems/joints/solution").write(hdf5::type_of<double>(), row, 1, wrong.data());
+}
+
 }  // namespace rodsweep

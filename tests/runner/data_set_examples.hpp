@@ -19,4 +19,10 @@ Json five_steps(const std::string& guesses, const std::string& solve = "{}");
 Plan make_data_set(const std::filesystem::path& path, const Json& job, std::int64_t failing = 1000,
                    bool pending = false);
 
+/// A data set of three rods of different sizes.
+Json ragged_job();
+
+/// Overwrites a solution of task 1 in the file of this plan, which no longer has its checksum then.
+void damage(const std::filesystem::path& path, const Plan& plan);
+
 }  // namespace rodsweep

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -41,6 +42,9 @@ inline BendingRod weightless_cantilever(int segments, double youngs_modulus_pa, 
   p.gravity_m_s2.setZero();
   return p;
 }
+
+/// Order of convergence from the errors at N and 2 N.
+inline double order(double error_n, double error_2n) { return std::log2(std::abs(error_n / error_2n)); }
 
 class Simulation {
  public:

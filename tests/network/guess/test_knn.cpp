@@ -1,4 +1,4 @@
-// Nearest neighbours: the neighbours found, the interpolation of their solutions, the cost.
+// Nearest neighbours: the neighbours found, the interpolation of their solutions, the cost; systems that fit no rod.
 
 #include "network/guess/knn_guess.hpp"
 #include "tests/catch.hpp"
@@ -121,6 +121,15 @@ TEST_CASE("a Newton iteration without training data is answered with zero") {
   CHECK(x0.norm() == 0);
   CHECK(!proposal.nonzero);
   CHECK(proposal.products == 0);
+}
+
+TEST_CASE("a system is not put into a rod of another size") {
+  StoredSystem system;
+  system.position.resize(3);
+  system.lambda.resize(12);
+  Rod rod = test::random_rod(test::chain(4), {}, 1);
+  CHECK_THROWS_WITH(restore(system, rod), Catch::Matchers::ContainsSubstring("3 segments and 2 joints") &&
+                                              Catch::Matchers::ContainsSubstring("4 and 3"));
 }
 
 }  // namespace rodsweep::test_knn

@@ -139,27 +139,6 @@ TEST_CASE("work on threads is done once each, and what it throws arrives") {
   in_parallel(0, 4, work);
 }
 
-TEST_CASE("a trainer restored in the middle goes on to the same bits") {
-  const Examples data = sample_examples(small_network(), 3, 4);
-  CopingNet<float> whole(small_network(), 1);
-  Trainer through(whole, data.examples, small_training());
-  REQUIRE(through.steps_per_epoch() == 3);
-  while (through.step() < through.steps()) step(through, 4);
-
-  for (const std::int64_t stop : {1, 3, 7}) {
-    CAPTURE(stop);
-    CopingNet<float> before(small_network(), 1), after(small_network(), 2);
-    Trainer interrupted(before, data.examples, small_training());
-    while (interrupted.step() < stop) step(interrupted, 4);
-    after.parameters().values() = before.parameters().values();
-    Trainer restored(after, data.examples, small_training());
-    restored.restore(interrupted.state());
-    CHECK(restored.step() == stop);
-    while (restored.step() < restored.steps()) step(restored, 4);
-    CHECK(after.parameters().values() == whole.parameters().values());
-  }
-}
-
 TEST_CASE("every example is seen once in an epoch, in another order in the next and with another seed") {
   const CopingNetSettings network = small_network();
   std::vector<Example> examples = sample_examples(network, 3, 4).examples;

@@ -15,16 +15,6 @@ using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
 namespace fs = std::filesystem;
 
-/// Three rods of different sizes.
-Json ragged_job() {
-  Json job = data_job();
-  job["samples"] = 3;
-  job["seed"] = 4;
-  job["scene"]["segments"] = {{"integer", {4, 12}}};
-  job["scene"]["damping_per_s"] = 0.5;
-  return job;
-}
-
 /// Two rods that the wind blows and a floor catches.
 Json uneven_job(const fs::path& curves) {
   Json job = data_job();
@@ -226,13 +216,7 @@ TEST_CASE("what is no finished data set is refused with what to do") {
 TEST_CASE("a damaged simulation is refused, the others are read") {
   const TemporaryFolder folder;
   const fs::path path = folder / "a.h5";
-  const Plan plan = make_data_set(path, ragged_job());
-  {
-    const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
-    const auto row = static_cast<hsize_t>(plan.task(1).rows[Rows::system_joint].first);
-    const std::vector<double> wrong(6, 0.5);
-    hdf5::RowDataset(file.id(), "/systems/joints/solution").write(hdf5::type_of<double>(), row, 1, wrong.data());
-  }
+  damage(path, make_data_set(path, ragged_job()));
   const DatasetReader data(path);
   CHECK(data.read(0).systems.size() == 4);
   CHECK_THAT(message_of<FileError>([&] { data.read(1); }), ContainsSubstring("is damaged: wrong checksum of task 1"));

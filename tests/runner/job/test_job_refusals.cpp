@@ -31,8 +31,6 @@ small: /scene/segments = 0; /scene/radius_m; /bogus = 1 | scene.segments: 0
 small: /scene/shear_modulus_pa = 2e5 | scene.shear_modulus_pa: "torsion_modulus_pa" and "shear_modulus_pa" are the same key
 
 # guesses within guesses
-small: /guesses/1 = {"copingnet": {"model": {"a": {}}}} | guesses[1].copingnet.model: {"a":{}} | a file
-small: /guesses/1 = {"knn": {"data": "x.h5", "inputs": {"b": [1]}}} | guesses[1].knn.inputs: | not allowed
 small: /guesses/1 = {"guarded": {"guess": {"subspace": {"size": {"gird": [5]}}}, "threshold": 1}}
   | guesses[1].guarded.guess.subspace.size: | "grid"?
 small: /guesses/1 = {"first": {"guess": {"oracle": {"error": [1]}}}} | guesses[1].first.guess.oracle.error: [1]
@@ -111,24 +109,11 @@ data: /scene/internal_damping_s = 0.1 | scene.internal_damping_s: 0.1 | kind "da
 closed: /solve = {"method": {"grid": ["direct", "end_to_end"]}} | solve.model: missing
 network: /guesses = ["zero"] | guesses: only solve.method "cg" uses initial guesses
 network: /evaluation = "paired" | solve.method: "end_to_end" is not allowed | must be used with "closed_loop"
-small: /solve = {"iterations": 5} | solve.iterations: this key belongs to solve.method "xpbd" or "pbd", not to "cg"
-  | use max_iterations for cg, time.newton_iterations for Newton
 
 # scenes
 small: /scene/stretch = "physical"; /scene/stretch_compliance_per_j = 1e-6 | scene: stretch is physical
   | stretch_compliance_per_j is given too | must be one of them
-small: /scene/section = {"type": "tube", "wall_m": 1} | scene: section.wall_m is 1 | at most radius_m
 small: /scene/section = {"type": {"grid": ["tube"]}, "wall_m": 0.01} | scene.section.type | list complete ones
-net: /scene/section = {"type": "tube", "wall_m": 0.01} | scene.section: | "ring"
-small: /scene/tip_motion = {"displacement_m": [0, 0, 1], "duration_s": 1}
-  | scene: tip_motion moves the ends of the free part | at most its length
-ring: /scene/segments = 2 | scene: segments is 2 | must be at least 3
-ring: /scene/clamp = "wall" | scene: a ring has no end | "wall"
-net: /scene/rows = 1 | scene: rows is 1 | must be at least 2
-net: /scene/clamp = "free" | scene.clamp: | "bending_rod" or "helix" or "ring", not to "net" | "held"
-lattice: /scene/nodes_z = 1 | scene: nodes_z is 1 | must be at least 2
-tree: /scene/depth = 20 | scene: number of segments of a tree is 1.04604e+10 | at most 1e7
-tree: /scene/clamp = "free" | scene.clamp: | not to "tree" | trees are fixed to the ground
 small: /scene/wind = "calm" | scene.wind: "calm" | an object {...}, or "none"
 small: /scene/loads = [{"at_m": [1, 0, 0], "times_s": [0]}] | scene: loads[0]: times_s has 1 values, factors 0
 small: /scene/motions = [{"at_m": [0, 0, 0], "displacement_m": [1, 0, 0]}] | scene: motions[0]: begins with the factor 1
@@ -144,12 +129,8 @@ touching: /scene/obstacles = [{"half_space": {"normal": [0, 0, 0]}}] | scene.obs
   | must have a direction
 
 # data sets and trainings
-small: /record = {"systems": "all"} | record.systems: | "dataset", not to "sweep" | use a job of kind "dataset"
-data: /solve = {"method": "direct"} | solve: this key belongs to kind "sweep", not to "dataset"; | remove this key
 train: /data | data: missing: training data | a string of 1 to 4000 characters on one line, or a non-empty list of these
 train: /data = ["a.h5", 5] | data[1]: 5 is not allowed
-train: /network/moves = true | network.moves: | network.processor "message_passing", not to "factors"
-  | factors work only on joints
 train: /training/shards = 5 | training.shards: 5 | a divisor of training.batch, 16
 train: /network/encoding = "paper" | network.encoding: "paper" | with network.processor "factors"
 train: /network/latent = 24 | network.latent: 24 is not allowed
@@ -164,10 +145,6 @@ state: /network = {"encoding": "state", "base": "none"} | network.processor: "fa
 )table";
 
 std::map<std::string, Json> base_jobs() {
-  const auto scene = [](const std::string& keys) {
-    return with("/scene",
-                "{" + keys + R"(, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
-  };
   Json train = train_job();
   train["network"] = train["training"] = Json::object();
   Json state = train;
@@ -183,10 +160,6 @@ std::map<std::string, Json> base_jobs() {
        with("/evaluation", "\"closed_loop\"",
             with("/solve", R"({"method": "end_to_end", "model": ")" PRETRAINED R"(/rods.h5"})", without("/guesses")))},
       {"touching", with("/scene/contact", R"({"friction": 0.3})")},
-      {"ring", scene(R"("type": "ring", "segments": 12, "length_m": 3, "radius_m": 0.05)")},
-      {"net", scene(R"("type": "net", "rows": 3, "columns": 4, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05)")},
-      {"lattice", scene(R"("type": "lattice", "nodes_x": 3, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05)")},
-      {"tree", scene(R"("type": "tree", "depth": 2, "branches": 3, "segments": 2, "length_m": 2, "radius_m": 0.1)")},
       {"data", data_job()},
       {"train", train},
       {"state", state},

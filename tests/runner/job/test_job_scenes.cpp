@@ -124,16 +124,6 @@ TEST_CASE("a tree's keys become a tree, and a forest has rows of solves and syst
   CHECK(data.rows[Rows::system_joint].count == 4 * 6 * 26);
 }
 
-TEST_CASE("a forest has at most as many trees as the rods of a file can be numbered") {
-  Json job = tree_job("forest", R"(, "spacing_m": 4, "rows": 217, "columns": 151)");
-  job["scene"]["depth"] = 0;
-  CHECK(plan_of(job).task(0).segments == 32767 * 3);
-  job["scene"]["rows"] = 182;
-  job["scene"]["columns"] = {{"grid", {180, 182}}};
-  CHECK_THAT(refusal(job), ContainsSubstring("job.json: scene: rows x columns is 33124") &&
-                               ContainsSubstring("must be at most 32767") && ContainsSubstring("several scenes"));
-}
-
 TEST_CASE("the scenes that are made for contact are read from their keys, and count all their rods") {
   const auto plan = [](const std::string& keys) { return plan_of(job_with_scene(keys + R"(, "radius_m": 0.01)")); };
   const Plan falling =

@@ -107,17 +107,6 @@ TEST_CASE("one tight solve counts what separate solves to each tolerance would n
   }
 }
 
-TEST_CASE("the test stays relative to b with a guess, even one whose residual starts far above b") {
-  const Case c = moving_chain();
-  const VectorX poor = 1e4 * Random(1).entries(c.a().unknowns()).cwiseProduct(c.exact.cwiseAbs());
-  ConjugateGradient cg(c.a(), {Preconditioner::jacobi, Norm::natural, 0});
-  const double reference = cg.norm_of(c.b());
-  const Run solved = run(cg, c.b(), 1e-6, &poor);
-  CHECK(solved.history.front() > 100 * reference);
-  CHECK(solved.report.outcome == SolveOutcome::converged);
-  CHECK(solved.history.back() <= 1e-6 * reference);
-}
-
 TEST_CASE("residuals are true to the last tolerance, however far above b the guess starts") {
   const Case c = moving_chain();
   const VectorX direction = Random(1).entries(c.a().unknowns());
@@ -131,9 +120,9 @@ TEST_CASE("residuals are true to the last tolerance, however far above b the gue
       const Run tight = run(cg, c.b(), 1e-8, &poor);
       CHECK(tight.report.outcome == SolveOutcome::converged);
       CHECK(tight.history.size() == static_cast<std::size_t>(tight.report.iterations) + 1);
+      CHECK(tight.history.back() <= 1e-8 * cg.norm_of(c.b()));
       if (settings.norm == Norm::natural) return;
       CHECK(residual(tight.x) <= 1.1e-8);
-      CHECK(tight.history.back() <= 1e-8 * c.b().norm());
       // Each count of the history is that of a solve of its own.
       std::int16_t counted = 0;
       iterations_to(tight.history, c.b().norm(), {1e-6}, &counted);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tests/catch.hpp"
+#include "tests/solver/stepping.hpp"
 #include "tests/solver/touching.hpp"
 
 namespace rodsweep::test_contact_rest {
@@ -72,21 +73,12 @@ Scene pile() {
   return scene;
 }
 
-/// How far a segment has moved at most, in radii of 0.02 m.
-double moved(const Scene& from, const Scene& to) {
-  double most = 0;
-  for (std::size_t rod = 0; rod < from.rods.size(); ++rod)
-    for (std::size_t s = 0; s < from.rods[rod].segments.size(); ++s)
-      most = std::max(most, (to.rods[rod].position[s] - from.rods[rod].position[s]).norm() / 0.02);
-  return most;
-}
-
 TEST_CASE("a pile of parallel rods between walls rests with line contacts") {
   const Scene scene = pile();
   Touching t(scene, 0.01);
   t.run(30);
   CHECK(t.run(30) < 0.01);
-  CHECK(moved(scene, t.scene) < 0.01);
+  CHECK(test::distance(scene, t.scene, &Rod::position) < 0.01 * 0.02);  // radii of 0.02 m
 }
 
 // 6000 steps: if each moved a contact by the tolerance in the same direction, this would be 6000 tolerances.
@@ -101,7 +93,7 @@ TEST_CASE("a pile at rest does not creep in a minute by what its contacts' toler
         const Scene settled = t.scene;
         INFO("BDF2 " << (integrator == Integrator::bdf2) << ", balance " << balance << ", tolerance " << tolerance);
         CHECK(t.run(6000) < 10 * tolerance);
-        CHECK(moved(settled, t.scene) < 50 * tolerance);
+        CHECK(test::distance(settled, t.scene, &Rod::position) < 50 * tolerance * 0.02);
       }
 }
 

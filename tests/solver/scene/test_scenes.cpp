@@ -171,7 +171,8 @@ TEST_CASE("scenes with too few segments are refused") {
 
 TEST_CASE("a scene of more rods than results can number is refused with the keys, their value and the bound") {
   const auto refused = [](const SceneSpec& spec, const std::string& keys) {
-    CHECK_THROWS_WITH(validate(spec), Catch::Matchers::StartsWith(keys + " is 32768; must be at most 32767"));
+    CHECK_THROWS_WITH(validate(spec), Catch::Matchers::StartsWith(keys + " is 32768; must be at most 32767") &&
+                                          Catch::Matchers::ContainsSubstring("several scenes"));
   };
   Forest forest;
   forest.shape.depth = 0;

@@ -4,6 +4,7 @@
 #include "solver/step/relaxation.hpp"
 #include "tests/catch.hpp"
 #include "tests/solver/simulation.hpp"
+#include "tests/solver/stepping.hpp"
 
 namespace rodsweep::test_relaxation {
 
@@ -22,13 +23,6 @@ Rest at_rest(const Scene& start, double dt, double tolerance, int most = 3000) {
   return {simulation.scene, -1};
 }
 
-double apart(const Scene& one, const Scene& other) {
-  double most = 0;
-  for (std::size_t s = 0; s < one.rods[0].segments.size(); ++s)
-    most = std::max(most, (one.rods[0].position[s] - other.rods[0].position[s]).norm());
-  return most;
-}
-
 TEST_CASE("kinetic damping ends in the equilibrium of dynamic relaxation, for any step") {
   BendingRod loaded = weightless_cantilever(20, 1e7, 4e6);
   loaded.tip_force_n = {0, -60, 20};
@@ -43,7 +37,7 @@ TEST_CASE("kinetic damping ends in the equilibrium of dynamic relaxation, for an
     for (const double dt : {0.005, 0.02, 0.05}) {
       const Rest rest = at_rest(start, dt, 1e-6);
       CHECK(rest.steps > 0);
-      CHECK(apart(rest.scene, reference.scene) < 1e-4 * p.length_m);
+      CHECK(test::distance(rest.scene, reference.scene, &Rod::position) < 1e-4 * p.length_m);
     }
   }
 }

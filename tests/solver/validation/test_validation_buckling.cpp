@@ -12,8 +12,6 @@
 
 namespace rodsweep::test_validation_buckling {
 
-double order(double error_n, double error_2n) { return std::log2(std::abs(error_n / error_2n)); }
-
 /// Gravity on a column of EI = 1 and L = 1, for w L^3 / EI; it leans by .01 rad towards x.
 Vector3 leaning_load(double gamma) { return gamma * Vector3(std::sin(0.01), -std::cos(0.01), 0); }
 

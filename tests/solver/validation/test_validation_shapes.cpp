@@ -12,8 +12,6 @@
 
 namespace rodsweep::test_validation_shapes {
 
-double order(double error_n, double error_2n) { return std::log2(std::abs(error_n / error_2n)); }
-
 /// The scene's rod at rest. Loads with this schedule grow within ten steps.
 Rod at_rest(const Scene& scene, double dt, double motion = 1e-9) {
   Simulation simulation(scene, dt, 40, 1e-10);
