@@ -133,7 +133,7 @@ STUDIES = {
         draw("spatial", "learned_rods_length"), remove("learned_rods_length", *NOT_SHOWN),
         summary("learned_rods_closed", "--by scene.segments --newton all"),
         origins("learned_rods", "learned_rods_length", "learned_rods_closed")]),
-    "generalisation": Study("inside and outside the training range of segments, stiffness, length and time step", "25 min", [
+    "generalisation": Study("inside and outside the training range of segments, stiffness, length and time step", "1 hour", [
         *generalisation("segments", "scene.segments"), *generalisation("segments_helix", "scene.segments"),
         *generalisation("stiffness", "scene.youngs_modulus_pa"), *generalisation("length", "scene.length_m"),
         *generalisation("step", "time.step_s")]),
@@ -229,7 +229,7 @@ def overview():
     width = max(map(len, ALL))
     studies, others = ([f"  {name:<{width}}  {study.question} ({study.time})" for name, study in table.items()]
                        for table in (STUDIES, OTHERS))
-    return "\n".join(["studies, 'all' runs these (three hours):", *studies, "others:", *others])
+    return "\n".join(["studies, 'all' runs these (four hours):", *studies, "others:", *others])
 
 
 def wanted(name):
