@@ -3,7 +3,6 @@
 #include "solver/guess/extrapolation_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
-#include "solver/guess/zero_guess.hpp"
 
 namespace rodsweep {
 

@@ -1,4 +1,4 @@
-#include "runner/command/command_line.hpp"
+#include "runner/command/commands.hpp"
 
 #include <fmt/format.h>
 

@@ -1,14 +1,16 @@
-// The commands beside `run`: their options as parsed, and what executes them. Each throws JobError for an error of a job,
-// FileError and Hdf5Error for one of a file.
+// The command line, and the commands beside `run`: their options as parsed, and what executes them. Each throws
+// JobError for an error of a job, FileError and Hdf5Error for one of a file.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "runner/command/exit_codes.hpp"
+#include "runner/command/run_command.hpp"
 #include "runner/terminal/console.hpp"
 
 namespace rodsweep {
@@ -101,5 +103,31 @@ ExitCode execute(const ExternalCommand& command, Console& console);
 /// columns of /tasks that are known before a task runs, names of the job's keys whose values are paths, and the default of
 /// solve.iterations, which has no column if no task sets it.
 std::string schema_text();
+
+/// Text to print instead of a command to run: help, version, schema, or a command-line error.
+struct PrintedText {
+  std::string text;
+  ExitCode code = ExitCode::ok;
+};
+
+using Command = std::variant<RunOptions, PlanOptions, ValidateOptions, StatusOptions, InfoOptions, RerunOptions,
+                             SystemsOptions, MergeOptions, ExternalCommand, PrintedText>;
+
+/// Parses the command line, in command_line.cpp. Runs, prints and starts nothing.
+Command parse_command_line(int argc, const char* const* argv);
+
+// The ranks of a run on this machine, for `run --workers`: in launch.cpp.
+
+/// Whether mpirun, srun or another launcher started this process as a rank.
+bool is_launched();
+
+/// Warns of a launcher that started several processes which do not know of each other, such as srun without PMIx; empty
+/// if the `ranks` of this world are all that it started.
+std::string separate_processes_text(int ranks);
+
+/// Runs mpirun with `ranks` ranks of this program, all with the arguments of this process, and returns its exit code.
+/// Settings of Open MPI for one machine are those of mpi-env.sh. mpirun gets the signals that request a stop. Its
+/// standard output is printed here, because mpirun ignores failed writes.
+ExitCode launch(int ranks, Console& console);
 
 }  // namespace rodsweep

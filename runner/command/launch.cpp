@@ -1,4 +1,4 @@
-#include "runner/command/launch.hpp"
+#include "runner/command/commands.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -17,8 +17,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "runner/command/commands.hpp"
-#include "runner/command/run_command.hpp"
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/file/durable.hpp"
 #include "runner/text/beside_program.hpp"

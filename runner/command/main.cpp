@@ -18,8 +18,7 @@
 #include <cstring>
 #include <exception>
 
-#include "runner/command/command_line.hpp"
-#include "runner/command/launch.hpp"
+#include "runner/command/commands.hpp"
 #include "runner/command/process_end.hpp"
 #include "runner/command/run_command.hpp"
 #include "runner/file/file_error.hpp"

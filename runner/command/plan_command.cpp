@@ -10,7 +10,7 @@
 #include "runner/command/commands.hpp"
 #include "runner/command/plan_estimate.hpp"
 #include "runner/command/run_command.hpp"
-#include "runner/file/file_creation.hpp"
+#include "runner/file/results_file.hpp"
 #include "runner/measure/host_memory.hpp"
 #include "runner/measure/plan_check.hpp"
 #include "runner/terminal/formats.hpp"

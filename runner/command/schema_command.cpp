@@ -7,10 +7,8 @@
 #include <vector>
 
 #include "runner/file/layout.hpp"
-#include "runner/keys/job_schema.hpp"
 #include "runner/keys/key.hpp"
 #include "runner/plan/task_outcome.hpp"
-#include "runner/specs/guess_keys.hpp"
 #include "solver/scene/scenes.hpp"
 
 namespace rodsweep {

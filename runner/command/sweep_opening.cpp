@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "runner/command/launch.hpp"
+#include "runner/command/commands.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/runs.hpp"

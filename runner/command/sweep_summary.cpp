@@ -1,4 +1,4 @@
-#include "runner/command/sweep_summary.hpp"
+#include "runner/command/sweep_opening.hpp"
 
 #include <fmt/format.h>
 

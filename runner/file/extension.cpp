@@ -12,7 +12,7 @@
 #include "runner/file/inspect.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/stored_plan.hpp"
-#include "runner/plan/job_extension.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

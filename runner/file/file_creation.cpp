@@ -1,4 +1,4 @@
-#include "runner/file/file_creation.hpp"
+#include "runner/file/results_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // The HDF5 file of a sweep, written by many ranks at once (MPI-IO, independent transfers).
 //
-// Rank 0 creates the complete file before the sweep (runner/file/file_creation.hpp). All datasets are contiguous with
+// Rank 0 creates the complete file before the sweep (create_results_file()). All datasets are contiguous with
 // early allocation, so no rank creates objects at run time; unwritten bytes and `/tasks/state` are zero ("pending").
 // A worker writes all rows of a task including sentinels, syncs them, then writes the state byte. So a task with state
 // 1 is complete, even after crashes or a power cut. Several tasks share a sync; syncs take at most 2 % of the time.
@@ -22,7 +22,6 @@
 #include <vector>
 
 #include "runner/file/durable.hpp"
-#include "runner/file/file_creation.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/file/opening.hpp"
 #include "runner/file/provenance.hpp"
@@ -30,6 +29,21 @@
 #include "runner/plan/plan.hpp"
 
 namespace rodsweep {
+
+/// Bytes that this process may still write to a folder.
+using FreeSpace = std::function<std::uintmax_t(const std::filesystem::path& folder)>;
+std::uintmax_t free_bytes(const std::filesystem::path& folder);
+
+/// Creates the file, complete except for the results, on one process with HDF5's default driver, in file_creation.cpp.
+/// It has a temporary name until it is complete (runner/file/unfinished_file.hpp). Its blocks are reserved if the file
+/// system supports this, so that the disk can't become full during the sweep. Throws FileError (exists, no space, no
+/// permission) and Hdf5Error. `earlier`: files whose tasks are copied. Their /runs come first, as far as they fit with
+/// one row left for this run. Returns the number of used rows of /runs.
+int create_results_file(const std::filesystem::path& path, const Plan& plan, const FreeSpace& free_space,
+                        const std::vector<std::filesystem::path>& earlier = {});
+
+/// Size of the file of this plan.
+std::int64_t file_bytes(const Plan& plan);
 
 class ResultsFile {
  public:

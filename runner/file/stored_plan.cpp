@@ -14,7 +14,7 @@
 #include "runner/file/provenance.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/job/job.hpp"
-#include "runner/plan/job_extension.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 namespace {

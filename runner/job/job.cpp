@@ -6,7 +6,6 @@
 #include <cstring>
 #include <fstream>
 
-#include "runner/job/scene_checks.hpp"
 #include "runner/keys/job_reader.hpp"
 #include "runner/keys/key.hpp"
 #include "runner/specs/training_job.hpp"

@@ -57,4 +57,13 @@ std::string shown(const nlohmann::ordered_json& value);
 /// The first difference; none if the jobs are the same. Names, descriptions and $schema may differ.
 std::optional<JobDifference> first_difference(const Job& now, const Job& before);
 
+// Checks of several keys of a validated job's scenes, in scene_checks.cpp: what is refused, and what is warned of.
+
+/// Throws JobError if a scene has obstacles without contact. `scenes`: the scene of a validated job, or a sweep of them.
+/// If contact is swept, obstacles are allowed: "none" is then the case to compare with.
+void check_obstacles(const nlohmann::ordered_json& scenes, const std::filesystem::path& file);
+
+/// A line for each value of a scene that is probably not meant, or that the job's steps get wrong.
+std::vector<std::string> scene_warnings(const Job& job);
+
 }  // namespace rodsweep

@@ -1,4 +1,4 @@
-#include "runner/job/scene_checks.hpp"
+#include "runner/job/job.hpp"
 
 #include <algorithm>
 #include <cmath>

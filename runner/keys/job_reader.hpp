@@ -1,4 +1,4 @@
-// Checks a job's JSON against the table of keys (runner/keys/tables.hpp) and fills in the defaults. All values of a
+// Checks a job's JSON against the table of keys (runner/keys/key.hpp) and fills in the defaults. All values of a
 // sweep are checked, and both ends of a range. Collects all mistakes, not only the first.
 #pragma once
 

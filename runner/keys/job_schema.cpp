@@ -1,11 +1,10 @@
-#include "runner/keys/job_schema.hpp"
+#include "runner/keys/key.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <map>
 
-#include "runner/keys/key.hpp"
 #include "runner/keys/sweep_words.hpp"
 #include "runner/text/job_error.hpp"
 

@@ -1,4 +1,4 @@
-#include "runner/measure/guesses.hpp"
+#include "runner/measure/timed_guess.hpp"
 
 #include <variant>
 
@@ -6,14 +6,11 @@
 #include "network/guess/knn_guess.hpp"
 #include "runner/measure/shared_inputs.hpp"
 #include "solver/guess/extrapolation_guess.hpp"
-#include "solver/guess/guarded_guess.hpp"
 #include "solver/guess/oracle_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/ritz_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
-#include "solver/guess/totals_guess.hpp"
 #include "solver/guess/wrapped_guess.hpp"
-#include "solver/guess/zero_guess.hpp"
 #include "solver/plugin/plugin.hpp"
 
 namespace rodsweep {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "network/guess/factor_preconditioner.hpp"
-#include "runner/measure/guesses.hpp"
 #include "runner/measure/shared_inputs.hpp"
 #include "runner/measure/timed_guess.hpp"
 #include "runner/plan/plan.hpp"

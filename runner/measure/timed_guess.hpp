@@ -1,4 +1,4 @@
-// A guess and its time for one system [s]:
+// A guess from its spec, and its time for one system [s]:
 //   seconds = prepare + median of the repeated proposals + accept,
 // so that one-time work is counted once, regardless of the repeats.
 #pragma once
@@ -7,10 +7,14 @@
 #include <memory>
 #include <vector>
 
+#include "runner/specs/task_spec.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
+
+/// Constructs a guess, in guesses.cpp.
+std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec& task, const Scene& scene);
 
 /// The median of repeated timings; the upper one if the count is even, so that the result is a measured time. Reorders `values`.
 inline double median(std::vector<double>& values) {

@@ -1,12 +1,12 @@
-#include "runner/plan/job_extension.hpp"
+#include "runner/plan/plan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 
+#include "runner/keys/key.hpp"
 #include "runner/keys/sweep_words.hpp"
-#include "runner/specs/guess_keys.hpp"
 #include "runner/text/job_error.hpp"
 
 namespace rodsweep {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "runner/specs/guess_keys.hpp"
 #include "runner/specs/scene_keys.hpp"
 #include "runner/specs/solve_keys.hpp"
 #include "solver/numbers/counter_random.hpp"

@@ -1,4 +1,4 @@
-#include "runner/specs/guess_keys.hpp"
+#include "runner/specs/solve_keys.hpp"
 
 #include <algorithm>
 #include <functional>

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "runner/keys/key_table.hpp"
-#include "runner/specs/guess_keys.hpp"
 #include "runner/specs/plugin_keys.hpp"
 #include "runner/text/job_error.hpp"
 

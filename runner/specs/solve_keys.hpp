@@ -1,14 +1,16 @@
-// The keys of `time` and `solve` in a job, and the specs constructed from them at a parameter point. Single values
-// are already validated; conditions on several values are checked here. Throws JobError.
+// The keys of `time`, `solve` and initial guesses in a job, and the specs constructed from them at a parameter point.
+// Single values are already validated; conditions on several values are checked here. Throws JobError.
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "runner/inputs/input_file.hpp"
 #include "runner/keys/key.hpp"
 #include "runner/keys/point.hpp"
+#include "runner/specs/guess_spec.hpp"
 #include "runner/specs/task_spec.hpp"
 
 namespace rodsweep {
@@ -29,5 +31,10 @@ void check_method(const Point& point, const std::vector<std::string>& labels, co
 
 /// Throws JobError if the solve method does not have what is recorded.
 void check_output(const OutputSpec& output, const Point& point, const JobFiles& job);
+
+/// Labels of the guesses of a validated job, in order.
+std::vector<std::string> guess_labels(const nlohmann::ordered_json& guesses);
+
+std::vector<GuessSpec> guess_specs(const Point& point, const std::vector<std::string>& labels, const JobFiles& job);
 
 }  // namespace rodsweep

@@ -1,4 +1,4 @@
-#include "runner/training/shard_exchange.hpp"
+#include "runner/training/training.hpp"
 
 #include <limits>
 #include <stdexcept>

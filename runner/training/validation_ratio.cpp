@@ -4,7 +4,6 @@
 
 #include "runner/plan/plan.hpp"
 #include "solver/cg/conjugate_gradient.hpp"
-#include "solver/guess/zero_guess.hpp"
 #include "solver/linear/solve_outcome.hpp"
 
 namespace rodsweep {

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "solver/cg/petsc_check.hpp"
-
 // The table of vector operations and the matrix class need PETSc's private headers, which Debian installs with the public
 // ones.
 #include <petsc/private/matimpl.h>

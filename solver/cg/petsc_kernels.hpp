@@ -1,4 +1,5 @@
-// PETSc vectors and a PETSc matrix with vector kernels built for this processor.
+// PETSc vectors and a PETSc matrix with vector kernels built for this processor, and the check of PETSc calls. Included
+// by sources only: the solver's headers do not include PETSc.
 //
 // On small systems KSPCG spends much of an iteration in dot products and updates. Debian's PETSc uses a reference BLAS
 // for them, compiled without wide vectors, on unaligned memory. These vectors replace the operations by kernels over
@@ -16,11 +17,24 @@
 #include <petscmat.h>
 
 #include <cstdint>
+#include <new>
+#include <string>
 
+#include "solver/cg/petsc_session.hpp"
 #include "solver/linear/block_matrix.hpp"
 #include "solver/linear/constraint_product.hpp"
 
 namespace rodsweep {
+
+/// Throws, so callbacks from PETSc must not use it: an exception must not cross C frames, and callbacks are noexcept.
+inline void petsc_check(PetscErrorCode code, const char* call) {
+  if (code == 0) return;
+  if (code == PETSC_ERR_MEM) throw std::bad_alloc();
+  const char* text = nullptr;
+  PetscErrorMessage(code, &text, nullptr);
+  throw PetscError(std::string(call) + " failed with PETSc error " + std::to_string(code) +
+                   (text ? std::string(": ") + text : ""));
+}
 
 Vec create_vector(PetscInt size);
 

@@ -4,7 +4,7 @@
 #include <petscksp.h>
 
 #include "solver/cg/cg_solver.hpp"
-#include "solver/cg/petsc_check.hpp"
+#include "solver/cg/petsc_kernels.hpp"
 
 namespace rodsweep {
 

@@ -34,10 +34,20 @@ class InitialGuess {
   /// Receives the solution of the system last proposed for, which is still assembled and has not yet moved the rod.
   virtual void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) = 0;
   /// Receives the sum of a rod's solutions in a step, before its next step: a better value than the accepted solution of
-  /// the step's first system, which no longer exists (totals_guess.hpp). Guesses that store solutions replace it.
+  /// the step's first system, which no longer exists (TotalsGuess). Guesses that store solutions replace it.
   virtual void accept_total(int /*rod*/, int /*step*/, const VectorX& /*total*/) {}
   /// The space that CG projects out of the residuals of the system last proposed for; null: none.
   virtual Deflation* deflation() { return nullptr; }
+};
+
+/// Always zero: the denominator of every ratio.
+class ZeroGuess : public InitialGuess {
+ public:
+  Proposal propose(const LinearSystem&, const SolvePosition&, VectorX& x0) override {
+    x0.setZero();
+    return {};
+  }
+  void accept(const LinearSystem&, const SolvePosition&, const VectorX&) override {}
 };
 
 }  // namespace rodsweep

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "solver/guess/initial_guess.hpp"
 
@@ -54,6 +55,42 @@ class FirstGuess : public WrappedGuess {
   void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override {
     if (at.newton == 0) inner_->accept(system, at, solution);
   }
+};
+
+/// Uses another guess only if sqrt(r^T D^-1 r) of r = b - A x0 is below `threshold` times that of b, D the diagonal of
+/// A (the natural norm of Jacobi-preconditioned CG); else zero.
+class GuardedGuess : public WrappedGuess {
+ public:
+  GuardedGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, double threshold)
+      : WrappedGuess(std::move(inner)), threshold_(threshold), residual_(unknowns_of(scene)) {}
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+
+ private:
+  double threshold_;
+  std::vector<VectorX> residual_;  ///< per rod
+};
+
+/// Gives another guess a history of whole steps: the sum of a step's increments replaces the solution of its first
+/// Newton iteration,
+///   x_n = sum_j dlambda_j of step n.
+/// In a closed loop the first iteration's solution is inexact, and later iterations correct it: the sum is the best
+/// known change of the step. It is complete at the next step's first system, when prepare() passes it to the inner
+/// guess (accept_total). The inner guess accepts the solution of every system as without totals, and later iterations
+/// keep their own histories.
+class TotalsGuess : public WrappedGuess {
+ public:
+  TotalsGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner);
+  void prepare(const SolvePosition& at) override;
+  void accept(const LinearSystem& system, const SolvePosition& at, const VectorX& solution) override;
+  void accept_total(int, int, const VectorX&) override {}  // its own sums are more recent
+
+ private:
+  struct Total {
+    VectorX sum;
+    int step = -1;     ///< of the sum
+    bool told = true;  ///< whether the inner guess received it
+  };
+  std::vector<Total> totals_;  ///< per rod
 };
 
 }  // namespace rodsweep

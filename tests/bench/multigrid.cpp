@@ -2,7 +2,7 @@
 
 #include <petscksp.h>
 
-#include "solver/cg/petsc_check.hpp"
+#include "solver/cg/petsc_kernels.hpp"
 
 namespace rodsweep::bench {
 

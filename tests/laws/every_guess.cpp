@@ -7,9 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "runner/measure/guesses.hpp"
+#include "runner/measure/timed_guess.hpp"
 #include "runner/plan/plan.hpp"
-#include "runner/specs/guess_keys.hpp"
 #include "solver/cg/cg_solver.hpp"
 #include "solver/linear/solve_outcome.hpp"
 #include "tests/catch.hpp"

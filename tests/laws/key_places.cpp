@@ -7,7 +7,6 @@
 
 #include "runner/keys/key.hpp"
 #include "runner/measure/plan_check.hpp"
-#include "runner/specs/guess_keys.hpp"
 #include "runner/text/job_error.hpp"
 #include "tests/runner/data_set_examples.hpp"
 

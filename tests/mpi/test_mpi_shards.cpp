@@ -1,6 +1,6 @@
 // Shards on 1, 2 and 4 ranks: every rank gets all shards in order, whichever rank computes them.
 
-#include "runner/training/shard_exchange.hpp"
+#include "runner/training/training.hpp"
 #include "tests/catch.hpp"
 
 namespace rodsweep {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "runner/command/command_line.hpp"
+#include "runner/command/commands.hpp"
 #include "runner/command/run_command.hpp"
 #include "tests/catch.hpp"
 #include "tests/runner/file_examples.hpp"

@@ -1,6 +1,6 @@
 
 #include "runner/file/extension.hpp"
-#include "runner/plan/job_extension.hpp"
+#include "runner/plan/plan.hpp"
 #include "tests/catch.hpp"
 #include "tests/runner/file_examples.hpp"
 

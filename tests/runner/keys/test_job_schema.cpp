@@ -1,9 +1,7 @@
 // Every key is described, and the JSON Schema follows the table of keys. tests/command/test_schema.py checks the committed schema against the
 // reader with a real validator.
 
-#include "runner/keys/job_schema.hpp"
 #include "runner/keys/key.hpp"
-#include "runner/specs/guess_keys.hpp"
 #include "tests/catch.hpp"
 #include "tests/runner/job_examples.hpp"
 

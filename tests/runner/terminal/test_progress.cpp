@@ -1,7 +1,7 @@
 // Progress, summaries and their words.
 #include <csignal>
 
-#include "runner/command/sweep_summary.hpp"
+#include "runner/command/sweep_opening.hpp"
 #include "runner/terminal/formats.hpp"
 #include "runner/terminal/progress.hpp"
 #include "solver/plugin/printable.hpp"

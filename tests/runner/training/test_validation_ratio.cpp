@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "runner/dataset/dataset_reader.hpp"
-#include "runner/measure/guesses.hpp"
+#include "runner/measure/timed_guess.hpp"
 #include "runner/training/validation_ratio.hpp"
-#include "solver/guess/zero_guess.hpp"
+#include "solver/guess/initial_guess.hpp"
 #include "tests/catch.hpp"
 #include "tests/runner/data_set_examples.hpp"
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "solver/cg/conjugate_gradient.hpp"
-#include "solver/guess/guarded_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/wrapped_guess.hpp"
 #include "tests/catch.hpp"

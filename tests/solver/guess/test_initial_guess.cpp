@@ -5,12 +5,11 @@
 #include <utility>
 
 #include "solver/guess/extrapolation_guess.hpp"
-#include "solver/guess/guarded_guess.hpp"
+#include "solver/guess/initial_guess.hpp"
 #include "solver/guess/oracle_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/wrapped_guess.hpp"
-#include "solver/guess/zero_guess.hpp"
 #include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "solver/guess/regression_guess.hpp"
-#include "solver/guess/totals_guess.hpp"
+#include "solver/guess/wrapped_guess.hpp"
 #include "solver/step/projection.hpp"
 #include "tests/catch.hpp"
 #include "tests/solver/support.hpp"
