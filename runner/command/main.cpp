@@ -22,7 +22,6 @@
 #include "runner/command/process_end.hpp"
 #include "runner/command/run_command.hpp"
 #include "runner/file/file_error.hpp"
-#include "runner/file/inspect.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/console.hpp"

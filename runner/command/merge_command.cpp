@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runner/dispatch/stop_signal.hpp"
-#include "runner/file/file_reading.hpp"
+#include "runner/file/file_error.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/record.hpp"
 #include "runner/file/results_file.hpp"

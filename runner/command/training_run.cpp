@@ -10,7 +10,7 @@
 #include "network/training/threads.hpp"
 #include "runner/command/training_summary.hpp"
 #include "runner/dispatch/stop_signal.hpp"
-#include "runner/file/file_reading.hpp"
+#include "runner/file/file_error.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/job/job.hpp"
 #include "runner/specs/training_job.hpp"

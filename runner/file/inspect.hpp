@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "runner/file/file_error.hpp"
 #include "runner/file/provenance.hpp"
 
 namespace rodsweep {

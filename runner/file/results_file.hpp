@@ -22,7 +22,6 @@
 #include <vector>
 
 #include "runner/file/durable.hpp"
-#include "runner/file/file_error.hpp"
 #include "runner/file/opening.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"

@@ -19,7 +19,6 @@
 
 #include "solver/linear/linear_system.hpp"
 #include "solver/rod/rod_arrays.hpp"
-#include "solver/scene/scene.hpp"
 #include "solver/step/projection.hpp"
 
 namespace rodsweep {

@@ -19,7 +19,6 @@
 
 #include "runner/file/record.hpp"
 #include "runner/specs/task_spec.hpp"
-#include "solver/guess/initial_guess.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/step/forcing_terms.hpp"
 #include "solver/step/projection.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runner/dataset/dataset_reader.hpp"
-#include "runner/file/file_reading.hpp"
+#include "runner/file/file_error.hpp"
 #include "runner/file/task_reader.hpp"
 #include "runner/measure/shared_inputs.hpp"
 #include "runner/measure/start_state.hpp"

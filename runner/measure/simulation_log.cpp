@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "runner/measure/projections.hpp"
-#include "solver/numbers/larger_or_nan.hpp"
 #include "solver/numbers/narrow.hpp"
 #include "solver/rod/rod_arrays.hpp"
 #include "solver/step/observables.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "runner/file/file_reading.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/specs/training_job.hpp"

@@ -68,7 +68,6 @@ class CgSolver {
   CgSolver(int max_iterations, int unknowns) : max_iterations_(max_iterations), residual_(VectorX::Zero(unknowns)) {}
   virtual ~CgSolver() = default;
   CgSolver(CgSolver&&) = default;
-  CgSolver& operator=(CgSolver&&) = default;
 
   /// The next solve that iterates rebuilds the preconditioner, within its time. Without this call the old one is kept.
   virtual void matrix_changed() = 0;

@@ -5,7 +5,6 @@
 #include <exception>
 #include <limits>
 #include <memory>
-#include <string>
 #include <utility>
 
 #include "solver/cg/petsc_kernels.hpp"
@@ -213,7 +212,6 @@ ConjugateGradient::ConjugateGradient(const LinearSystem& system, const CgSetting
       impl_(std::make_unique<Impl>(system.matrix(), system.product(), settings)) {}
 ConjugateGradient::~ConjugateGradient() = default;
 ConjugateGradient::ConjugateGradient(ConjugateGradient&&) noexcept = default;
-ConjugateGradient& ConjugateGradient::operator=(ConjugateGradient&&) noexcept = default;
 
 void ConjugateGradient::matrix_changed() { impl_->stale = true; }
 

@@ -24,7 +24,6 @@ class ConjugateGradient : public CgSolver {
   ConjugateGradient(const LinearSystem& system, const CgSettings& settings);
   ~ConjugateGradient() override;
   ConjugateGradient(ConjugateGradient&&) noexcept;
-  ConjugateGradient& operator=(ConjugateGradient&&) noexcept;
 
   void matrix_changed() override;  ///< products always use the current entries
   double norm_of(const VectorX& b) override;

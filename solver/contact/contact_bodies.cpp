@@ -13,8 +13,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double half_pi = 1.57079632679489661923;
-
 /// The rest pose of the other segment of a joint.
 Pose beyond(const Joint& joint, int from, const Pose& pose) {
   const bool forwards = from == joint.a;
@@ -114,12 +112,12 @@ void ContactBodies::exclude_near(const Rod& rod, int first_body, JointWays& ways
       const Joint& through = rod.joints[at(joint)];
       for (const int segment : {through.a, through.b}) {
         const double touching = radius + rod.segments[at(segment)].radius_m;
-        if (segment > start && way.length_m < half_pi * touching)
+        if (segment > start && way.length_m < pi / 2 * touching)
           excluded_[at(first_body + start)].push_back(first_body + segment);
       }
     };
     ways.from(
-        ways.joints_of(start), half_pi * (radius + widest), [](int) { return true; }, exclude);
+        ways.joints_of(start), pi / 2 * (radius + widest), [](int) { return true; }, exclude);
   }
 }
 

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include "solver/contact/rebound.hpp"
 #include "solver/linear/interruption.hpp"
-#include "solver/numbers/rotation.hpp"
 
 namespace rodsweep {
 namespace {

@@ -14,11 +14,6 @@ struct Front {
   int parent = -1;             ///< front
   int rows = 0;                ///< of R
   std::int64_t entries = 0;    ///< blocks of L without padding
-
-  std::int64_t stored() const {
-    const auto w = static_cast<std::int64_t>(columns.size());
-    return w * (w + 1) / 2 + w * rows;
-  }
 };
 
 /// Whether a merged front with this padding is cheaper. Zeros cost less than the edges of small fronts.
@@ -136,7 +131,6 @@ AssemblyTree::AssemblyTree(const EliminationTree& tree) {
     node.row_count = front.rows;
     node.panel = panel_size;
     panel_size += node.panel_size();
-    blocks += front.stored();
     for (const int k : front.columns) row.push_back(tree.row[at(k)]);
     supernodes.push_back(node);
   }

@@ -14,7 +14,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "solver/factor/elimination_tree.hpp"
@@ -65,7 +64,6 @@ class AssemblyTree {
 
   std::size_t panel_size = 0;               ///< doubles
   std::array<std::size_t, 2> stack_size{};  ///< doubles
-  std::int64_t blocks = 0;                  ///< of L, padding of fronts included
   /// Memory of a factor: panels and stacks.
   double bytes() const {
     return static_cast<double>(sizeof(double)) * static_cast<double>(panel_size + stack_size[0] + stack_size[1]);

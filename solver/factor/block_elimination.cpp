@@ -70,7 +70,6 @@ BlockElimination::BlockElimination(const BlockMatrix& pattern, const std::vector
     for (const int p : later) {
       // Row r of B = A_kp is column r of A_pk.
       const int source = pattern.find(rows[at(p)], row);
-      fill_in_ += source < 0;
       off_.push_back({p, source, false, false});
     }
     columns_.push_back({row, begin, static_cast<int>(off_.size()), 0, pattern.diagonal(row), false});

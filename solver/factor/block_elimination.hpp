@@ -26,7 +26,6 @@ class BlockElimination {
   bool factorise(const BlockMatrix& a);
   void substitute(VectorX& x);
   void substitute(std::vector<Lane8>& x);
-  int fill_in() const { return fill_in_; }
 
  private:
   struct Column {            ///< one elimination, in the order of elimination
@@ -57,7 +56,6 @@ class BlockElimination {
   std::vector<Block6> off_work_;       ///< rows of B_p before, of X_p after its elimination
   std::vector<Block6> inverse_;        ///< rows of S^-1, of factorise()
   std::vector<Lane8> solution_;        ///< y, then x; lane 6 is -1 for the back substitution
-  int fill_in_ = 0;
 };
 
 }  // namespace rodsweep

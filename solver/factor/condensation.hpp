@@ -33,7 +33,6 @@ class Condensation {
   bool assemble(const Rod& rod, const Linearization& linearization, double dt);
 
   const BlockMatrix& matrix() const { return matrix_; }  ///< S, a block row per crossing
-  const StrutGraph& graph() const { return graph_; }
 
   /// Sets g from a residual r, six per joint.
   void condense(const VectorX& r, VectorX& g);

@@ -31,7 +31,7 @@ std::string gibibytes(double bytes) {
 
 EliminationPlan plan_elimination(const BlockMatrix& pattern, const std::vector<int>& preferred) {
   const auto blocks = static_cast<double>(lower_blocks(pattern));
-  if (!fills_in(pattern, preferred)) return {preferred, {}, 0, sizeof(Block6) * blocks, 0};
+  if (!fills_in(pattern, preferred)) return {preferred, {}, 0, sizeof(Block6) * blocks};
   EliminationPlan plan{minimum_degree_order(pattern)};
   EliminationTree tree = elimination_tree(pattern, plan.order);
   const double one_by_one = flop_of_single_blocks * tree.flops();
@@ -46,16 +46,13 @@ EliminationPlan plan_elimination(const BlockMatrix& pattern, const std::vector<i
   }
   plan.fill_in = tree.blocks() - lower_blocks(pattern);
   plan.bytes = plan.fronts ? plan.fronts->bytes() : sizeof(Block6) * static_cast<double>(tree.blocks());
-  plan.flops = tree.flops();
   plan.cost = plan.fronts ? cost_in_fronts(tree) : one_by_one;
   return plan;
 }
 
 FactorTooLarge::FactorTooLarge(int rows, double needed, double most)
     : std::runtime_error("a direct solve of " + std::to_string(rows) + " joints needs " + gibibytes(needed) +
-                         " for its factor; the limit is " + gibibytes(most)),
-      block_rows(rows),
-      bytes(needed) {}
+                         " for its factor; the limit is " + gibibytes(most)) {}
 
 void refuse_too_large(const EliminationPlan& plan, double most_bytes) {
   if (plan.bytes > most_bytes) throw FactorTooLarge(static_cast<int>(plan.order.size()), plan.bytes, most_bytes);

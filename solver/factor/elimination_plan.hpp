@@ -24,7 +24,6 @@ struct EliminationPlan {
   std::optional<AssemblyTree> fronts{};  ///< empty: blocks one by one
   std::int64_t fill_in = 0;              ///< blocks of L that A does not have
   double bytes = 0;                      ///< of the factor
-  double flops = 0;                      ///< of a factorisation; 0 without fill
   double cost = 0;                       ///< of a factorisation, in flops of the fronts' kernels; 0 without fill
 };
 
@@ -33,8 +32,6 @@ EliminationPlan plan_elimination(const BlockMatrix& pattern, const std::vector<i
 /// A factor would need more memory than allowed.
 struct FactorTooLarge : std::runtime_error {
   FactorTooLarge(int block_rows, double bytes, double most_bytes);
-  int block_rows;
-  double bytes;
 };
 
 /// Throws FactorTooLarge if the factor needs more than `most_bytes`.

@@ -1,6 +1,5 @@
 #include "solver/factor/strut_graph.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace rodsweep {
@@ -28,7 +27,7 @@ class Walk {
     for (int s = 0; s < rod_.segment_count(); ++s)  // rings
       if (is_inner(s)) {
         crossing_[at(s)] = true;
-        add_crossing(s, out_.nodes());
+        add_crossing(s);
         add_strut(beyond(joints_of_[at(s)].front(), s));
       }
     for (int k = 0; k < rod_.joint_count(); ++k)
@@ -48,25 +47,23 @@ class Walk {
     return false;
   }
 
-  void add_crossing(int s, int node) {
+  void add_crossing(int s) {
     out_.place[at(s)] = static_cast<int>(out_.crossings.size());
     out_.crossings.push_back(s);
-    out_.node.push_back(node);
   }
 
-  /// Numbers crossings by node, nodes by their first segment.
+  /// Numbers crossings node by node (those joined by links without arms), nodes by their first segment.
   void number_crossings() {
     out_.place.assign(crossing_.size(), -1);
     std::vector<int> queue;
     for (int first = 0; first < rod_.segment_count(); ++first) {
       if (!crossing_[at(first)] || out_.place[at(first)] >= 0) continue;
-      const int node = out_.nodes();
       queue.assign(1, first);
       while (!queue.empty()) {
         const int s = queue.back();
         queue.pop_back();
         if (out_.place[at(s)] >= 0) continue;
-        add_crossing(s, node);
+        add_crossing(s);
         for (const int k : joints_of_[at(s)])
           if (joint(k).arm_a.isZero() && joint(k).arm_b.isZero() && crossing_[at(beyond(k, s))])
             queue.push_back(beyond(k, s));

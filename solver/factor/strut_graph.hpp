@@ -8,7 +8,6 @@
 // A rod without crossings consists of struts without ends.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "solver/rod/rod.hpp"
@@ -22,13 +21,10 @@ struct Strut {
 };
 
 struct StrutGraph {
-  std::vector<int> crossings;  ///< segments; those of one node follow each other
-  std::vector<int> node;       ///< of each crossing: joined by links without arms
+  std::vector<int> crossings;  ///< segments; those joined by links without arms follow each other
   std::vector<Strut> struts;
   std::vector<int> links;  ///< joints
   std::vector<int> place;  ///< of each segment among the crossings, -1 for others
-
-  int nodes() const { return node.empty() ? 0 : node.back() + 1; }
 };
 
 StrutGraph strut_graph(const Rod& rod);

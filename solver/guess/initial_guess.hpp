@@ -4,8 +4,6 @@
 // same system. Every guess is one more implementation of this interface, also a learned one.
 #pragma once
 
-#include <memory>
-
 #include "solver/cg/cg_solver.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/step/projection.hpp"

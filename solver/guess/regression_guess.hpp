@@ -9,8 +9,6 @@
 // The normal equations cost one pass over the stored right-hand sides. Earlier steps give their dot products.
 #pragma once
 
-#include <vector>
-
 #include "solver/guess/history_guess.hpp"
 #include "solver/guess/normal_equations.hpp"
 

@@ -1,7 +1,5 @@
 #include "solver/guess/subspace_guess.hpp"
 
-#include <algorithm>
-
 namespace rodsweep {
 
 SubspaceGuess::SubspaceGuess(const Scene& scene, int newton_iterations, int size, Window window, Use use)

@@ -4,7 +4,6 @@
 // AVX-512 register, two AVX or four SSE ones, so the same source is portable and fast.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 

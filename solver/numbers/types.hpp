@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstddef>
 
 namespace rodsweep {
@@ -21,8 +22,6 @@ namespace rodsweep {
 using Vector3 = Eigen::Vector3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix3 = Eigen::Matrix3d;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;  // column-major, 36 contiguous doubles, no alignment requirement beyond
-                                              // double's vector
 using VectorX = Eigen::VectorXd;
 using Quaternion = Eigen::Quaterniond;
 
@@ -30,5 +29,8 @@ inline constexpr double pi = 3.14159265358979323846;
 
 /// An index of a standard container; segments, joints and steps have numbers of type int.
 constexpr std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+/// The larger of two numbers, or NaN if either is NaN: std::max ignores a NaN in second place.
+inline double larger_or_nan(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 }  // namespace rodsweep

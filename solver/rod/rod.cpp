@@ -1,6 +1,5 @@
 #include "solver/rod/rod.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>

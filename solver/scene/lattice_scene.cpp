@@ -1,7 +1,5 @@
-#include <algorithm>
 #include <array>
 #include <map>
-#include <string>
 
 #include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_parts.hpp"

@@ -1,6 +1,5 @@
 #include "solver/scene/tree_skeleton.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "solver/linear/block_kernels.hpp"
-#include "solver/numbers/larger_or_nan.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/rod/joint_kernels.hpp"
 

@@ -5,7 +5,6 @@
 // Virtual calls are per solve, never per segment.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "solver/numbers/larger_or_nan.hpp"
 #include "solver/rod/joint_forces.hpp"
 #include "solver/step/observables.hpp"
 

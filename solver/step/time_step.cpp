@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "solver/linear/interruption.hpp"
-#include "solver/numbers/larger_or_nan.hpp"
 #include "solver/numbers/rotation.hpp"
 
 namespace rodsweep {

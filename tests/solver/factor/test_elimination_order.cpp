@@ -105,20 +105,21 @@ TEST_CASE(
     return plan_elimination(LinearSystem(scene.rods.front()).matrix(), root_to_leaf_order(scene.rods.front()));
   };
   CHECK(!plan(BendingRod{}).fronts);
-  CHECK(plan(BendingRod{}).flops == 0);
+  CHECK(plan(BendingRod{}).cost == 0);
   CHECK(!plan(Ring{}).fronts);
   CHECK(!plan(Net{}).fronts);
   const EliminationPlan lattice = plan(cubic(5, 3));
   REQUIRE(lattice.fronts);
   CHECK(lattice.bytes == lattice.fronts->bytes());
   const BlockMatrix pattern = system_of(cubic(5, 3));
+  const double flops = elimination_tree(pattern, lattice.order).flops();
   const EliminationTree minimum_degree = elimination_tree(pattern, minimum_degree_order(pattern));
   if (nested_dissection_order(pattern).empty()) {  // built without METIS
-    CHECK(lattice.flops == minimum_degree.flops());
+    CHECK(flops == minimum_degree.flops());
     return;
   }
-  CHECK(lattice.flops < 0.6 * minimum_degree.flops());
-  CHECK(elimination_tree(pattern, nested_dissection_order(pattern)).flops() == lattice.flops);
+  CHECK(flops < 0.6 * minimum_degree.flops());
+  CHECK(elimination_tree(pattern, nested_dissection_order(pattern)).flops() == flops);
 }
 
 TEST_CASE("a factor that would need too much memory is refused with its size, before it asks for any") {
