@@ -113,6 +113,14 @@ std::string master_text(const Estimate& needs, int workers) {
       workers, wanted, master_tasks_per_s, shards);
 }
 
+/// Those that vary over the tasks.
+std::vector<std::string> swept_keys(const Plan& plan) {
+  std::vector<std::string> keys;
+  for (const ParameterColumn& parameter : plan.parameters())
+    if (parameter.swept) keys.push_back(parameter.path);
+  return keys;
+}
+
 nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probes, const PlanOptions& options) {
   nlohmann::ordered_json json{{"job", plan.job().path.native()},
                               {"name", plan.job().name},
@@ -122,9 +130,7 @@ nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probe
                               {"guesses", plan.guess_labels()},
                               {"stored_systems", plan.rows(Rows::system)},
                               {"file_bytes", file_bytes(plan)}};
-  json["swept"] = nlohmann::ordered_json::array();
-  for (const ParameterColumn& parameter : plan.parameters())
-    if (parameter.swept) json["swept"].push_back(parameter.path);
+  json["swept"] = swept_keys(plan);
   json["warnings"] = warnings_of(plan, probes, options);
   if (probes.empty()) return json;
   const Estimate needs = estimate(plan, probes);
@@ -159,10 +165,7 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
   std::string text = fmt::format("job      {} ({})\n", plan.job().name, plan.job().path.native());
   text += fmt::format("tasks    {}, each {} segments, {} steps\n", plan.size(), bounds(plan, &Task::segments).text(),
                       bounds(plan, &Task::steps).text());
-  std::string swept;
-  for (const ParameterColumn& parameter : plan.parameters())
-    if (parameter.swept) swept += (swept.empty() ? "" : ", ") + parameter.path;
-  if (!swept.empty()) text += fmt::format("swept    {}\n", swept);
+  if (const auto swept = swept_keys(plan); !swept.empty()) text += fmt::format("swept    {}\n", fmt::join(swept, ", "));
   text += fmt::format("steps    {}\n", all_steps(plan));
   const auto guesses = plan.guess_labels().size();
   text += fmt::format("systems  {} at most{}{}\n", most_systems(plan),

@@ -62,10 +62,8 @@ std::optional<StoredBalance> stored_balance(const TaskRecord& record, const Rod&
   const Cells<double>& position = record.systems.free_position_m;
   if (position.empty() || std::isnan(position(first))) return std::nullopt;
   StoredBalance out;
-  out.free_position.resize(rod.segments.size());
-  out.free_orientation.resize(rod.segments.size());
-  load(position.row(first), out.free_position);
-  load(record.systems.free_orientation.row(first), out.free_orientation);
+  load(position.row(first), rod.segments.size(), out.free_position);
+  load(record.systems.free_orientation.row(first), rod.segments.size(), out.free_orientation);
   for (std::size_t row = first; row < first + rod.segments.size(); ++row)
     out.contact_impulse.emplace_back() << Vector3::Map(record.systems.contact_force.row(row)),
         Vector3::Map(record.systems.contact_torque.row(row));
@@ -84,14 +82,11 @@ std::vector<StoredSystem> stored_systems(const TaskRecord& record, const Scene& 
     system.constraint_dt_s = record.systems.constraint_dt_s[row];
     const Rod& rod = scene.rods[static_cast<std::size_t>(system.at.rod)];
     const SystemRows::First first = rows.first_of(system.at);
-    system.position.resize(rod.segments.size());
-    system.orientation.resize(rod.segments.size());
-    system.velocity.resize(rod.segments.size());
-    system.angular_velocity.resize(rod.segments.size());
-    load(record.systems.position_m.row(first.segment), system.position);
-    load(record.systems.orientation.row(first.segment), system.orientation);
-    load(record.systems.velocity_m_s.row(first.segment), system.velocity);
-    load(record.systems.angular_velocity_rad_s.row(first.segment), system.angular_velocity);
+    const std::size_t count = rod.segments.size();
+    load(record.systems.position_m.row(first.segment), count, system.position);
+    load(record.systems.orientation.row(first.segment), count, system.orientation);
+    load(record.systems.velocity_m_s.row(first.segment), count, system.velocity);
+    load(record.systems.angular_velocity_rad_s.row(first.segment), count, system.angular_velocity);
     system.balance = stored_balance(record, rod, first.segment);
     system.lambda = VectorX::Map(record.systems.lambda.row(first.joint), rod.lambda.size());
     system.solution = VectorX::Map(record.systems.solution.row(first.joint), rod.lambda.size());

@@ -94,7 +94,7 @@ std::optional<Verified> to_run_again(const fs::path& path, const Plan& plan, con
   verified.again.assign(done.size(), not_again);
   std::uint8_t stopped = 0;
   collectively(comm, [&] {
-    const TaskReader reader(path, TaskReader::Times::left_out, plan.tasks());
+    const TaskReader reader(path, TaskReader::Times::left_out, &plan.tasks());
     FileHeartbeat heartbeat(path);
     TaskRecord record;
     Verify state = Verify::on;

@@ -98,13 +98,8 @@ void check_rows(const RowRange& rows, std::int64_t width, const hdf5::RowDataset
 
 }  // namespace
 
-TaskReader::TaskReader(const fs::path& path, Times times) : TaskReader(path, times, nullptr) {}
-
-TaskReader::TaskReader(const fs::path& path, Times times, const TaskList& tasks)
-    : TaskReader(path, times, std::shared_ptr<const TaskList>(std::shared_ptr<void>(), &tasks)) {}
-
-TaskReader::TaskReader(const fs::path& path, Times times, std::shared_ptr<const TaskList> tasks)
-    : path_(path), file_(open_results(path)), tasks_(std::move(tasks)) {
+TaskReader::TaskReader(const fs::path& path, Times times, const TaskList* tasks)
+    : path_(path), file_(open_results(path)), tasks_(std::shared_ptr<void>(), tasks) {
   reading(path, [&] {
     // States before data: all data of a task with state 1 are in the file.
     states_ = read_states(file_, path);

@@ -20,9 +20,8 @@ namespace rodsweep {
 class TaskReader {
  public:
   enum class Times { read, left_out };
-  explicit TaskReader(const std::filesystem::path& path, Times times = Times::read);
-  /// For a file whose tasks are known: this reader then needs 3 bytes for each. `tasks` must outlive it.
-  TaskReader(const std::filesystem::path& path, Times times, const TaskList& tasks);
+  /// `tasks`: of the file, if they are known: this reader then needs 3 bytes for each. They must outlive it.
+  explicit TaskReader(const std::filesystem::path& path, Times times = Times::read, const TaskList* tasks = nullptr);
 
   /// Identity and rows of the tasks.
   const TaskList& tasks() const { return *tasks_; }
@@ -41,9 +40,6 @@ class TaskReader {
   TaskOrigin origin(std::int64_t task) const;
 
  private:
-  /// `tasks`: null: as stored.
-  TaskReader(const std::filesystem::path& path, Times times, std::shared_ptr<const TaskList> tasks);
-
   std::filesystem::path path_;
   hdf5::File file_;
   AxisSizes sizes_;

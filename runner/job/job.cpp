@@ -11,6 +11,7 @@
 #include "runner/specs/training_job.hpp"
 #include "runner/sweep/sweep_space.hpp"
 #include "runner/text/strict_json.hpp"
+#include "runner/text/words.hpp"
 
 namespace rodsweep {
 namespace {
@@ -141,12 +142,7 @@ std::vector<MissingFile> missing_files(const Job& job) {
   return missing;
 }
 
-std::string shown(const Json& value) {
-  if (value.is_null()) return "nothing";
-  constexpr std::size_t longest = 80;
-  const std::string text = value.dump();
-  return text.size() <= longest ? text : text.substr(0, longest) + "...";
-}
+std::string shown(const Json& value) { return value.is_null() ? "nothing" : shortened(value.dump(), 80); }
 
 std::optional<JobDifference> first_difference(const Job& now, const Job& before) {
   const Json a = settings(now), b = settings(before);

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "runner/keys/sweep_words.hpp"
 #include "runner/text/words.hpp"
@@ -32,8 +31,9 @@ bool looks_like_one(const Key& key, const Json& value) {
 
 /// Advice to write a sweep, if a plain list of values is given where one value is expected.
 std::string sweep_advice(const Key& key, const Json& value) {
-  const auto fits = [&](const Json& item) { return looks_like_one(key, item); };
-  if (!key.sweepable || !value.is_array() || value.empty() || !std::all_of(value.begin(), value.end(), fits)) return "";
+  const auto is_one = [&](const Json& item) { return looks_like_one(key, item); };
+  if (!key.sweepable || !value.is_array() || value.empty() || !std::all_of(value.begin(), value.end(), is_one))
+    return "";
   std::string items;
   for (const Json& item : value) items += (items.empty() ? "" : ", ") + item.dump();
   if (items.size() > 40) items = value[0].dump() + ", ...";
@@ -43,10 +43,6 @@ std::string sweep_advice(const Key& key, const Json& value) {
     advice += fmt::format(", to draw from the range {{\"{}\": [{}]}}",
                           key.kind == Key::Kind::integer ? "integer" : "uniform", items);
   return advice;
-}
-
-bool within(const Key& key, double value) {
-  return std::isfinite(value) && value <= key.high && (key.above_low ? value > key.low : value >= key.low);
 }
 
 bool has_form(const std::string& text, Key::Text form) {
@@ -178,12 +174,9 @@ Json JobReader::read_number(const Key& key, const Json& value, const std::string
   }
   if (value.is_object() && value.size() == 1)
     return refuse(key, value, path, did_you_mean(value.begin().key(), sweep_words()));
-  const bool whole = key.kind == Key::Kind::integer;
-  if (!value.is_number() || !within(key, value.get<double>()) ||
-      (whole && std::trunc(value.get<double>()) != value.get<double>()))
-    return refuse(key, value, path);
+  if (!value.is_number() || !fits(key, value.get<double>())) return refuse(key, value, path);
   warn_if_implausible(key, value.get<double>(), path);
-  return whole ? Json(static_cast<std::int64_t>(value.get<double>())) : value;
+  return key.kind == Key::Kind::integer ? Json(static_cast<std::int64_t>(value.get<double>())) : value;
 }
 
 void JobReader::use(const std::string& file, FileKind kind, const std::string& path) {

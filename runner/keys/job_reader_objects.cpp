@@ -15,13 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// "a" or "b"
-std::string alternatives(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += fmt::format("{}\"{}\"", text.empty() ? "" : " or ", word);
-  return text;
-}
-
 /// "oracle 0.1", "oracle 0.1 smooth": the name and the unswept parameters, without words that are defaults.
 std::string default_label(const std::string& name, const Json& parameters) {
   std::string label = name;
@@ -58,9 +51,7 @@ Json example_value(const Key& key, const Json& given) {
     case Key::Kind::integer:
     case Key::Kind::number: {
       const double wanted = given.is_number() ? given.get<double>() : NAN;
-      const bool fits = wanted <= key.high && (key.above_low ? wanted > key.low : wanted >= key.low) &&
-                        (key.kind == Key::Kind::number || std::trunc(wanted) == wanted);
-      return fits ? number(wanted) : key.preset.value_or(Json(1));
+      return fits(key, wanted) ? number(wanted) : key.preset.value_or(Json(1));
     }
     case Key::Kind::choice: return key.preset.value_or(Json(key.choices.front()));
     case Key::Kind::text: return given.is_string() && !given.empty() ? given : Json("FILE.h5");
@@ -153,7 +144,8 @@ Json JobReader::read_items(const Key& item, const Json& values, const std::strin
 void JobReader::refuse_unknown(const Key& key, const std::string& name, const std::string& path) {
   if (const Key* other = find_key(key.keys, name)) {
     mistake(member(path, name), "this key belongs to {} {}, not to \"{}\"{}{}", tag_.path,
-            alternatives(other->only_for), tag_.value, other->only_advice.empty() ? "" : "; ", other->only_advice);
+            quoted_list(other->only_for, " or "), tag_.value, other->only_advice.empty() ? "" : "; ",
+            other->only_advice);
     return;
   }
   std::vector<std::string> known, words;

@@ -62,9 +62,9 @@ std::vector<std::string> names(const std::vector<Key>& keys) {
   return result;
 }
 
-std::string quoted_list(const std::vector<std::string>& words) {
+std::string quoted_list(const std::vector<std::string>& words, const char* separator) {
   std::string text;
-  for (const std::string& word : words) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", word);
+  for (const std::string& word : words) text += fmt::format("{}\"{}\"", text.empty() ? "" : separator, word);
   return text;
 }
 
@@ -104,6 +104,11 @@ std::optional<nlohmann::ordered_json> preset_of(const Key& key, const std::strin
 
 bool belongs(const Key& key, const std::string& tag_value) {
   return key.only_for.empty() || std::find(key.only_for.begin(), key.only_for.end(), tag_value) != key.only_for.end();
+}
+
+bool fits(const Key& key, double value) {
+  return std::isfinite(value) && value <= key.high && (key.above_low ? value > key.low : value >= key.low) &&
+         (key.kind != Key::Kind::integer || std::trunc(value) == value);
 }
 
 bool is_plausible(const Key& key, double value) {

@@ -145,6 +145,9 @@ bool belongs(const Key& key, const std::string& tag_value);
 /// The default value.
 std::optional<nlohmann::ordered_json> preset_of(const Key& key, const std::string& tag_value);
 
+/// Whether a number is finite, within the bounds, and whole if those of the key are.
+bool fits(const Key& key, double value);
+
 /// Whether a value is 0 or in the plausible range, which the key must have.
 bool is_plausible(const Key& key, double value);
 
@@ -156,7 +159,7 @@ nlohmann::ordered_json number(double value);
 
 std::vector<std::string> names(const std::vector<Key>& keys);
 /// "a", "b", "c"
-std::string quoted_list(const std::vector<std::string>& words);
+std::string quoted_list(const std::vector<std::string>& words, const char* separator = ", ");
 
 // The tables of keys that the reader, the schema and the space of a sweep follow. Their rows are in runner/specs.
 

@@ -42,12 +42,9 @@ void open_input(const std::filesystem::path& path, FileKind kind) {
 
 bool branches(const SceneSpec& scene) {
   if (open_rod(scene)) return false;
-  for (const Rod& rod : build_scene(scene).rods) {
-    std::vector<int> joints(rod.segments.size(), 0);
-    for (const Joint& joint : rod.joints)
-      for (const int segment : {joint.a, joint.b})
-        if (++joints[static_cast<std::size_t>(segment)] > 2) return true;
-  }
+  for (const Rod& rod : build_scene(scene).rods)
+    for (const std::vector<JointEnd>& joints : joints_by_segment(rod))
+      if (joints.size() > 2) return true;
   return false;
 }
 
@@ -139,11 +136,10 @@ bool may_be_too_large(std::int64_t joints, double most_bytes) {
 
 /// Throws JobError if the joints of one segment are too many: each is coupled to each, in the matrix and in its factor.
 void check_couplings(const Rod& rod, const Task& task, const Job& job, double most_bytes) {
-  std::vector<int> joints(rod.segments.size());
-  for (const Joint& joint : rod.joints)
-    for (const int segment : {joint.a, joint.b})
-      if (!rod.segments[static_cast<std::size_t>(segment)].is_static) ++joints[static_cast<std::size_t>(segment)];
-  const double most = *std::max_element(joints.begin(), joints.end());
+  const std::vector<std::vector<JointEnd>> joints = joints_by_segment(rod);
+  double most = 0;
+  for (std::size_t s = 0; s < joints.size(); ++s)
+    if (!rod.segments[s].is_static) most = std::max(most, static_cast<double>(joints[s].size()));
   constexpr double gibibyte = 1 << 30;
   if (const double bytes = sizeof(double) * 36 * most * most; bytes > most_bytes)
     throw job_error(job.path, "scene",

@@ -90,12 +90,13 @@ StartState::StartState(std::shared_ptr<const TaskRecord> record, const StartSpec
   std::size_t joint = frame * joints_of(*record_);
   std::size_t row = first_segment_ = frame * frames.segments.length_m.size();
   for (Rod& rod : scene.rods) {
-    load(frames.position_m.row(row), rod.position);
-    load(frames.orientation.row(row), rod.orientation);
-    load(frames.states.velocity_m_s.row(row), rod.velocity);
-    load(frames.states.angular_velocity_rad_s.row(row), rod.angular_velocity);
+    const std::size_t count = rod.segments.size();
+    load(frames.position_m.row(row), count, rod.position);
+    load(frames.orientation.row(row), count, rod.orientation);
+    load(frames.states.velocity_m_s.row(row), count, rod.velocity);
+    load(frames.states.angular_velocity_rad_s.row(row), count, rod.angular_velocity);
     if (rod.joint_count() > 0) rod.lambda = VectorX::Map(frames.states.lambda.row(joint), rod.lambda.size());
-    row += rod.segments.size();
+    row += count;
     joint += rod.joints.size();
   }
   scene.time_s = spec.clock_s.value_or(frames.time_s[frame]);
@@ -107,12 +108,10 @@ void StartState::continue_steps(TimeStepper& stepper) const {
   for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
     const std::size_t count = scene_.rods[r].segments.size();
     RodMotion before;
-    before.position.resize(count), before.orientation.resize(count);
-    before.velocity.resize(count), before.angular_velocity.resize(count);
-    load(states.before_position_m.row(row), before.position);
-    load(states.before_orientation.row(row), before.orientation);
-    load(states.before_velocity_m_s.row(row), before.velocity);
-    load(states.before_angular_velocity_rad_s.row(row), before.angular_velocity);
+    load(states.before_position_m.row(row), count, before.position);
+    load(states.before_orientation.row(row), count, before.orientation);
+    load(states.before_velocity_m_s.row(row), count, before.velocity);
+    load(states.before_angular_velocity_rad_s.row(row), count, before.angular_velocity);
     if (before.position[0].allFinite()) stepper.continue_from(static_cast<int>(r), before);
     row += count;
   }

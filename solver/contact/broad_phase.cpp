@@ -17,7 +17,8 @@ using Region = geometry::model::box<Corner>;
 using Tree = geometry::index::rtree<std::pair<Region, int>, geometry::index::linear<16>>;
 
 Region region(const Box& box) {
-  return {{box.low.x(), box.low.y(), box.low.z()}, {box.high.x(), box.high.y(), box.high.z()}};
+  const Vector3 &low = box.min(), &high = box.max();
+  return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
 }
 
 /// A box is enlarged by this many of its last motions, and at most by this many margins.
@@ -36,10 +37,10 @@ const std::vector<Pair>& BroadPhase::pairs(const std::vector<Box>& boxes) {
     if (last_.size() != boxes.size()) last_ = boxes;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const double most = ahead * margins_[i];
-      const Vector3 further = (ahead * (boxes[i].low - last_[i].low)).cwiseMax(-most).cwiseMin(most);
-      kept_[i] = boxes[i].grown(margins_[i]);
-      kept_[i].low += further.cwiseMin(0);
-      kept_[i].high += further.cwiseMax(0);
+      const Vector3 further = (ahead * (boxes[i].min() - last_[i].min())).cwiseMax(-most).cwiseMin(most);
+      kept_[i] = grown(boxes[i], margins_[i]);
+      kept_[i].min() += further.cwiseMin(0);
+      kept_[i].max() += further.cwiseMax(0);
     }
     search();
   }

@@ -12,21 +12,10 @@
 
 namespace rodsweep {
 
-struct Box {
-  Vector3 low, high;
+using Box = Eigen::AlignedBox3d;
 
-  void include(const Vector3& point) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
-  Box grown(double by) const { return {low.array() - by, high.array() + by}; }
-  bool contains(const Box& other) const {
-    return (low.array() <= other.low.array()).all() && (other.high.array() <= high.array()).all();
-  }
-  bool meets(const Box& other) const {
-    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
-  }
-};
+/// Enlarged on every side by this length [m].
+inline Box grown(const Box& box, double by) { return {box.min().array() - by, box.max().array() + by}; }
 
 struct Pair {
   int a, b;  ///< a < b

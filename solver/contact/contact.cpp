@@ -24,10 +24,8 @@ std::vector<double> margins(const ContactBodies& bodies) {
 
 Box swept_box(const CapsuleAxis& from, const CapsuleAxis& to, double beyond) {
   Box box{from.at(1), from.at(1)};
-  box.include(from.at(-1));
-  box.include(to.at(1));
-  box.include(to.at(-1));
-  return box.grown(beyond);
+  box.extend(from.at(-1)).extend(to.at(1)).extend(to.at(-1));
+  return grown(box, beyond);
 }
 
 bool is_finite(const CapsuleAxis& axis) { return axis.centre.allFinite() && axis.half.allFinite(); }

@@ -43,14 +43,16 @@ inline void store(const std::vector<Quaternion>& quaternions, double* rows) {
   }
 }
 
-inline void load(const double* rows, std::vector<Vector3>& vectors) {
+inline void load(const double* rows, std::size_t count, std::vector<Vector3>& vectors) {
+  vectors.resize(count);
   for (Vector3& v : vectors) {
     v = Vector3::Map(rows);
     rows += 3;
   }
 }
 
-inline void load(const double* rows, std::vector<Quaternion>& quaternions) {
+inline void load(const double* rows, std::size_t count, std::vector<Quaternion>& quaternions) {
+  quaternions.resize(count);
   for (Quaternion& q : quaternions) {
     q = Quaternion(rows[0], rows[1], rows[2], rows[3]);
     rows += 4;

@@ -5,15 +5,11 @@
 #include <limits>
 
 #include "solver/numbers/rotation.hpp"
+#include "solver/rod/joint_forces.hpp"
 #include "solver/rod/momentum_balance.hpp"
 
 namespace rodsweep {
 namespace {
-
-/// A joint's shared point from one of its segments.
-Vector3 point_on(const Rod& rod, int segment, const Vector3& arm) {
-  return rod.position[at(segment)] + rod.orientation[at(segment)] * arm;
-}
 
 /// I w of an axisymmetric segment, world frame.
 Vector3 spin_momentum(const Rod& rod, std::size_t s) {
@@ -57,7 +53,7 @@ double rod_length(const Rod& rod) {
     (arm.z() < 0 ? tail[s] : head[s]) = to;
   };
   for (const Joint& j : rod.joints) {
-    const Vector3 midpoint = (point_on(rod, j.a, j.arm_a) + point_on(rod, j.b, j.arm_b)) / 2;
+    const Vector3 midpoint = (point_on_a(rod, j) + point_on_b(rod, j)) / 2;
     move_end(j.a, j.arm_a, midpoint);
     move_end(j.b, j.arm_b, midpoint);
   }
@@ -70,7 +66,7 @@ double rod_length(const Rod& rod) {
 double joint_gap(const Rod& rod) {
   double worst = 0;
   for (const Joint& j : rod.joints)
-    worst = std::max(worst, (point_on(rod, j.a, j.arm_a) - point_on(rod, j.b, j.arm_b)).norm() / j.length);
+    worst = std::max(worst, (point_on_a(rod, j) - point_on_b(rod, j)).norm() / j.length);
   return worst;
 }
 

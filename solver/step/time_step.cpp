@@ -163,9 +163,9 @@ TimeStepper::Newton TimeStepper::iterate(Projection& projection, int until, Step
   return Newton::open;
 }
 
-double constraint_dt(double damping_per_s, double h) {
+double constraint_dt(const Scene& scene, double h) {
   // Drag scales the constraints' forces like the loads, so that it cancels at rest and does not shift an equilibrium.
-  return h / std::sqrt(1 + damping_per_s * h);
+  return h / std::sqrt(1 + scene.damping_per_s * h);
 }
 
 void TimeStepper::start() {

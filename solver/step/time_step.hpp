@@ -51,8 +51,7 @@ struct Reactions {
 };
 
 /// dt_c of a step with h: it converts compliances to alpha~ and multipliers to forces.
-double constraint_dt(double damping_per_s, double h);
-inline double constraint_dt(const Scene& scene, double h) { return constraint_dt(scene.damping_per_s, h); }
+double constraint_dt(const Scene& scene, double h);
 
 class TimeStepper {
  public:

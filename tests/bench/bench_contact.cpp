@@ -58,8 +58,8 @@ struct Fallen {
     bodies.place(scene, axes);
     for (const CapsuleAxis& axis : axes) {
       Box box{axis.at(1), axis.at(1)};
-      box.include(axis.at(-1));
-      boxes.push_back(box.grown(0.06));
+      box.extend(axis.at(-1));
+      boxes.push_back(grown(box, 0.06));
       margins.push_back(0.025);
     }
     for (Rod& rod : scene.rods)

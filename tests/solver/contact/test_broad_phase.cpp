@@ -32,7 +32,7 @@ std::set<std::pair<int, int>> searched(const std::vector<Box>& boxes, double mar
   std::set<std::pair<int, int>> out;
   for (int a = 0; a < static_cast<int>(boxes.size()); ++a)
     for (int b = a + 1; b < static_cast<int>(boxes.size()); ++b)
-      if (matters(a, b) && boxes[a].grown(margin).meets(boxes[b].grown(margin))) out.emplace(a, b);
+      if (matters(a, b) && grown(boxes[a], margin).intersects(grown(boxes[b], margin))) out.emplace(a, b);
   return out;
 }
 
@@ -57,13 +57,13 @@ TEST_CASE("pairs are searched anew only when a box has left its margin, and none
   for (int step = 0; step < 20; ++step) {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const Vector3 by = random.vector(0.09);
-      boxes[i] = {start[i].low + by, start[i].high + by};
+      boxes[i] = {start[i].min() + by, start[i].max() + by};
     }
     const auto kept = set_of(broad_phase.pairs(boxes));
     for (const auto& pair : searched(boxes, 0)) CHECK(kept.count(pair) == 1);
   }
   CHECK(broad_phase.searches() == 1);
-  boxes[7].high.x() = start[7].high.x() + 0.11;
+  boxes[7].max().x() = start[7].max().x() + 0.11;
   broad_phase.pairs(boxes);
   CHECK(broad_phase.searches() == 2);
 }
