@@ -118,7 +118,7 @@ STUDIES = {
     "temporal": Study("development over simulated time", "8 min",
                       [*temporal("bending"), *temporal("helix")]),
     "side_by_side": Study("one rod by the direct solve, by CG with a learned guess and by networks alone", "1 min", [
-        *run("side_by_side"), to("side_by_side", draw("side_by_side", "side_by_side", "--log-time")),
+        *run("side_by_side"), to("side_by_side", draw("side_by_side", "side_by_side", "--log-time --moments 1,2,4")),
         origins("side_by_side")]),
     "long_term": Study("20,000 steps in closed loops with networks, as a guess and instead of the solve", "5 min", [
         *run("long_term_learned"), to("long_term_learned", draw("long_term", "long_term_learned", "--log-time")),
