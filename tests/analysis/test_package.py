@@ -128,7 +128,7 @@ class Package(unittest.TestCase):
             summary = said(os.path.join(programs, "rodsweep-summary"), "sweep.h5", "--csv")
             self.assertEqual(summary, said(sys.executable, ROOT / "summary.py", "sweep.h5", "--csv"))
             long_term = said(os.path.join(programs, "rodsweep-long-term"), "--help")
-            self.assertIn("\n  rodsweep-long-term results/long_term.h5\n", long_term)
+            self.assertIn("\n  rodsweep-long-term results/long_term_learned.h5\n", long_term)
             place, ok = said(python, "-c", "import rodsweep; print(rodsweep.__file__, "
                              "rodsweep.open('sweep.h5').census().ok)").split()
             self.assertTrue(place.startswith(os.path.join(folder, "environment", "lib")), place)
