@@ -143,9 +143,11 @@ class Runs:
                 ran = np.isfinite(old.error)    # the others may have been stopped
                 if not np.allclose(old.error[ran], new.error[ran], rtol=SAME_TO):
                     raise SweepFileError(f"{self.path} has other errors than this program gives ({setting.text()}): remove it")
-            scale = float(np.median([np.median(new.time_s) / np.median(old.time_s) for old, new in zip(before, after)]))
-            self.known = {key: of if key in again else replace(of, time_s=of.time_s * scale) for key, of in self.known.items()}
-        self._write({**self._header, "scale": float(f"{scale:.3g}")})
+            scale = texts.shortened(np.median([np.median(new.time_s) / np.median(old.time_s)
+                                               for old, new in zip(before, after)]), 3)
+            self.known.update(zip(again, before))    # as in the file, so that a search that goes on decides alike
+            self.known = {key: replace(of, time_s=of.time_s * scale) for key, of in self.known.items()}
+        self._write({**self._header, "scale": scale})
         self._last = self._header["made"]
 
     def _simulate(self, wanted, draws, samples, limit_s, store=True):
