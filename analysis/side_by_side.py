@@ -92,7 +92,7 @@ def figure(shown, found, apart, options):
              f"Last panel: root mean square distance of the segments from those of {reference}.", shown.about()]
     count = len(options.moments) + 1
     page = layout.Page(shown.width_mm, [""], count, layout.even_columns(count, 3 if shown.wide else 2), 42,
-                       [Line2D([], [], label=style.literal(name), **line(name)) for name in found], notes, gap_mm=9, ticks_mm=7)
+                       [Line2D([], [], label=style.literal(name), **line(name)) for name in found], notes, gap_mm=9, ticks_mm=9)
     *panels, last = page.axes[0]
     lines = {name: [line_of(one, frame_at(one, moment)) @ plane.T for moment in options.moments]
              for name, one in found.items()}
