@@ -92,7 +92,7 @@ def regression(size=6):
 
 
 def copingnet(model, corrections=1, lag_steps=0, stop_at=0):
-    return (f"learned: the network {model} corrects a classical guess {_times(corrections)}" +
+    return (f"learned: the network {model} corrects its base guess (zero or a classical one) {_times(corrections)}" +
             (", with a product with A for each correction after the first" if corrections != 1 else "") +
             (f"; its factors serve {lag_steps} time steps" if lag_steps else "") +
             (f"; it stops at a residual of {stop_at} of the right-hand side" if stop_at else ""))
