@@ -40,6 +40,7 @@ from decimal import ROUND_HALF_UP, Decimal
 from pathlib import Path
 
 import jinja2
+import links
 import scores
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
@@ -212,7 +213,7 @@ def styled(number, style):
 
 def wrapped(text):
     """The lines of a paragraph or item, 120 wide; links stay whole."""
-    words = re.sub(r"\[[^]]*\]\([^)]*\)", lambda link: link.group().replace(" ", "\0"), " ".join(text.split()))
+    words = links.LINK_TEXT.sub(lambda link: link.group().replace(" ", "\0"), " ".join(text.split()))
     lines = textwrap.fill(words, 120, break_long_words=False, break_on_hyphens=False,
                           subsequent_indent="  " if words.startswith("- ") else "")
     return lines.replace("\0", " ") + "\n"

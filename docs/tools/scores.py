@@ -106,14 +106,11 @@ class Scores:
 
     def rules(self):
         """The version of the rules, and what was measured by an earlier one."""
-        now = [one.title for one in self._scored if one.protocol == answers.PROTOCOL]
-        before = {}
-        for one in self._scored:
-            if one.protocol != answers.PROTOCOL:
-                before.setdefault(one.protocol, []).append(one.title)
-        if not now:
-            return listed([str(version) for version in before])
-        return " ".join([str(answers.PROTOCOL), *(f"({listed(titles)}: {version})" for version, titles in before.items())])
+        titles = {}
+        for one in sorted(self._scored, key=lambda one: -one.protocol):
+            titles.setdefault(one.protocol, []).append(one.title)
+        newest, *earlier = titles
+        return f"{newest}" + "".join(f" ({listed(titles[version])}: {version})" for version in earlier)
 
 
 def _fastest(of):
